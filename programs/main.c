@@ -19,29 +19,6 @@
 #include <string.h>
 #include <unistd.h>
 
-/* If a standard stream is closed, the next opened file would take its place and
- * receive output that was meant for the stream. */
-static void fill_standard_streams(void) {
-    for (int handle = 0; handle <= 2; handle++) {
-        if (fcntl(handle, F_GETFD) == -1)
-            (void)!open("/dev/null", handle == 1 ? O_RDONLY : O_RDWR);
-    }
-}
-
-static int print_version(void) {
-    if (process_talks())
-        printf("snowglass %s\n", snow_version());
-    return finish_stdout();
-}
-
-/* `help` takes a word; other verbs take files. */
-static int run_help(const options *opts) {
-    if (opts->operand_count > 1)
-        return fail_usage("%s: is one word too many; help takes one name",
-                          opts->operands[1]);
-    return help_print(opts->operand_count ? opts->operands[0] : NULL, NULL);
-}
-
 /* bench and serve are not in the list: they are programs of their own. */
 static int run_verb(const verb_row *verb, const options *opts) {
     switch (verb->bit) {
@@ -68,7 +45,11 @@ static int run_verb(const verb_row *verb, const options *opts) {
     case VERB_DOCTOR:
         return cmd_doctor(opts);
     default:
-        return run_help(opts);
+        /* `help` takes a word; other verbs take files. */
+        if (opts->operand_count > 1)
+            return fail_usage("%s: is one word too many; help takes one name",
+                              opts->operands[1]);
+        return help_print(opts->operand_count ? opts->operands[0] : NULL, NULL);
     }
 }
 
@@ -139,19 +120,16 @@ static int run_command(command *c) {
     return done;
 }
 
-/* help --window means the option, but help --help is the overview. */
-static bool is_option(const char *word) {
-    return word[0] == '-' && strcmp(word, "--help") != 0 &&
-           strcmp(word, "-h") != 0;
-}
-
 static int read_options(command *c, int argc, char **argv) {
     options_init(&c->opts);
     int done = options_parse(&c->opts, c->verb, argc, argv);
     if (done != CONTINUE)
         return done;
-    if (c->opts.version)
-        return print_version();
+    if (c->opts.version) {
+        if (process_talks())
+            printf("snowglass %s\n", snow_version());
+        return finish_stdout();
+    }
     if (c->opts.help && !process_talks())
         return SNOW_STATUS_OK;
     if (c->opts.help)
@@ -180,7 +158,9 @@ static int read_command(int argc, char **argv, command *c) {
         return sibling_become("snowglass-serve", argv + 1);
     if (!is_for_all(verb) && !process_talks())
         return CONTINUE;
-    if (verb->bit == VERB_HELP && argc == 3 && is_option(argv[2]))
+    /* help --window means the option, but help --help is the overview. */
+    if (verb->bit == VERB_HELP && argc == 3 && argv[2][0] == '-' &&
+        strcmp(argv[2], "--help") != 0 && strcmp(argv[2], "-h") != 0)
         return help_print(argv[2], NULL);
     return read_options(c, argc - 1, argv + 1);
 }
@@ -223,7 +203,12 @@ static int dispatch(int argc, char **argv) {
 }
 
 int tool_run(int argc, char **argv, const process_start *how) {
-    fill_standard_streams();
+    /* If a standard stream is closed, the next opened file would take its place
+     * and receive output that was meant for the stream. */
+    for (int handle = 0; handle <= 2; handle++) {
+        if (fcntl(handle, F_GETFD) == -1)
+            (void)!open("/dev/null", handle == 1 ? O_RDONLY : O_RDWR);
+    }
     process_begin(how);
     interrupt_install();
     int done = process_agree(dispatch(argc, argv));

@@ -73,15 +73,6 @@ static int share_processors(void) {
     return threads > 1 ? threads : 1;
 }
 
-/* A broken communicator cannot agree on an exit code.  The rank that prints has
- * given the reason already. */
-static void end_job(const process_start *how, int code) {
-    if (!process_talks())
-        fprintf(stderr, "snowglass: rank %d: %s\n", process_rank(),
-                snow_context_message(snow_comm_context(how->comm)));
-    MPI_Abort(MPI_COMM_WORLD, code ? code : SNOW_STATUS_FAILED);
-}
-
 /* While MPI starts or ends, all ranks wait in it for one that is stopped; only
  * a signal can interrupt this. */
 static void give_up(int number) {
@@ -116,8 +107,14 @@ static int run_tool(int argc, char **argv) {
     alarm(0);
     if (status == SNOW_STATUS_OK) {
         done = tool_run(argc, argv, &how);
-        if (snow_comm_broken(how.comm))
-            end_job(&how, done);
+        if (snow_comm_broken(how.comm)) {
+            /* A broken communicator cannot agree on an exit code.  The rank
+             * that prints has given the reason already. */
+            if (!process_talks())
+                fprintf(stderr, "snowglass: rank %d: %s\n", process_rank(),
+                        snow_context_message(snow_comm_context(how.comm)));
+            MPI_Abort(MPI_COMM_WORLD, done ? done : SNOW_STATUS_FAILED);
+        }
         limit_seconds(MPI_SECONDS);
         snow_comm_free(how.comm);
     } else {

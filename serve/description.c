@@ -21,13 +21,6 @@
 /* --- the volume --------------------------------------------------------------
  */
 
-static json_t *names_of(const char *(*name)(size_t)) {
-    json_t *list = json_array();
-    for (size_t i = 0; name(i); i++)
-        json_array_append_new(list, json_string(name(i)));
-    return list;
-}
-
 static json_t *presets(void) {
     json_t *list = json_array();
     for (size_t i = 0; snow_preset_name(i); i++)
@@ -65,13 +58,6 @@ static json_t *channel_name(const snow_volume_info *info, int64_t index) {
                        ? json_string(info->channel[index].name)
                        : NULL;
     return name ? name : json_string("");
-}
-
-static json_t *channel_names(const snow_volume_info *info) {
-    json_t *list = json_array();
-    for (int n = 0; n < info->channels && n < LISTED_MOST; n++)
-        json_array_append_new(list, channel_name(info, n));
-    return list;
 }
 
 /* As the file has it: a mask and clip planes make voxels NaN, so of floats. */
@@ -114,10 +100,13 @@ void answer_info(drawing *d, outbox *box) {
                         json_string(snow_view_name_for(info, NULL)));
     json_object_set_new(tree, "views", views(d));
     json_object_set_new(tree, "presets", presets());
-    json_object_set_new(tree, "colormaps", names_of(snow_colormap_name));
-    json_object_set_new(tree, "channels", channel_names(info));
+    json_object_set_new(tree, "colormaps", json_names(snow_colormap_name));
+    json_t *list = json_array();
+    for (int n = 0; n < info->channels && n < LISTED_MOST; n++)
+        json_array_append_new(list, channel_name(info, n));
+    json_object_set_new(tree, "channels", list);
     json_object_set_new(tree, "tf", json_boolean(d->first.tf != NULL));
-    json_object_set_new(tree, "keys", names_of(message_key));
+    json_object_set_new(tree, "keys", json_names(message_key));
     json_object_set_new(tree, "mask", json_boolean(d->first.mask != NULL));
     json_object_set_new(tree, "overlay",
                         d->first.overlay

@@ -41,8 +41,7 @@ static int check_recipe(const char *path, const json_t *recipe) {
     if (snow_context_new(NULL, &context) != SNOW_STATUS_OK)
         return fail_memory("out of memory at the start; close other programs");
     snow_status status = snow_recipe_load(context, path, &read);
-    int done =
-        status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
+    int done = check_status(context, status);
     if (done == CONTINUE && !json_is_true(json_object_get(recipe, "reread")))
         done = fail_usage("%s: needs \"reread\": true, by which the simulation "
                           "reads it again; add that, and start the simulation",
@@ -305,11 +304,6 @@ static void answer(const live *l, viewer_state *s, outbox *box,
     json_decref(question->tree);
 }
 
-static void rest(void) {
-    const struct timespec some = {.tv_nsec = (long)(1e9 * REST_SECONDS)};
-    nanosleep(&some, NULL);
-}
-
 void live_run(live *l, viewer_state *s, outbox *box) {
     viewer_work work = WORK_NONE;
     uint32_t saved = state_revision(s);
@@ -328,6 +322,7 @@ void live_run(live *l, viewer_state *s, outbox *box) {
         if (work == WORK_END || work == WORK_ANSWER)
             continue;
         show(l, s, box);
-        rest();
+        const struct timespec some = {.tv_nsec = (long)(1e9 * REST_SECONDS)};
+        nanosleep(&some, NULL);
     }
 }

@@ -27,11 +27,6 @@ static double seconds(void) {
 
 /* --- names ---------------------------------------------------------------- */
 
-static bool ends_in_png(const char *text) {
-    size_t length = strlen(text);
-    return length >= 4 && strcmp(text + length - 4, ".png") == 0;
-}
-
 /* Reads "%d" or "%04d"; returns what follows it, or NULL. */
 static const char *read_number_sign(const char *at, int *digits) {
     char *end = NULL;
@@ -45,8 +40,10 @@ bool live_files_open(live_files *f, const char *pattern) {
     const char *name = slash ? slash + 1 : pattern;
     const char *sign = strchr(name, '%');
     *f = (live_files){.newest = -1};
-    if (!sign || !(after = read_number_sign(sign, &f->digits)) ||
-        !ends_in_png(after))
+    if (!sign || !(after = read_number_sign(sign, &f->digits)))
+        return false;
+    const size_t length = strlen(after);
+    if (length < 4 || strcmp(after + length - 4, ".png") != 0)
         return false;
     f->folder =
         slash ? strndup(pattern, (size_t)(name - pattern)) : strdup("./");

@@ -266,12 +266,6 @@ static void *run(void *user) {
     return NULL;
 }
 
-/* From here on nothing may print to standard output. */
-static bool open_file(void) {
-    file = memfd_create("snowglass", MFD_CLOEXEC);
-    return file >= 0 && dup2(file, STDOUT_FILENO) == STDOUT_FILENO;
-}
-
 packer *packer_new(outbox *box) {
     packer *p = calloc(1, sizeof *p);
     if (!p)
@@ -279,7 +273,10 @@ packer *packer_new(outbox *box) {
     p->box = box;
     pthread_mutex_init(&p->lock, NULL);
     pthread_cond_init(&p->changed, NULL);
-    if (open_file() && snow_context_new(NULL, &p->context) == SNOW_STATUS_OK &&
+    /* From here on nothing may print to standard output. */
+    file = memfd_create("snowglass", MFD_CLOEXEC);
+    if (file >= 0 && dup2(file, STDOUT_FILENO) == STDOUT_FILENO &&
+        snow_context_new(NULL, &p->context) == SNOW_STATUS_OK &&
         pthread_create(&p->thread, NULL, run, p) == 0)
         return p;
     packer_free(p);

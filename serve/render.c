@@ -166,13 +166,6 @@ static json_t *need_of(const json_t *recipe, int level) {
     return need;
 }
 
-static bool is_in_vain(const renderer *r, int level, const json_t *recipe) {
-    json_t *need = need_of(recipe, level);
-    bool same = r->vain && json_equal(need, r->vain);
-    json_decref(need);
-    return same;
-}
-
 /* In words of a page, whose window is the size. */
 static void say_no_room(const renderer *r, int level) {
     const options *opts = &r->drawing->opts;
@@ -206,8 +199,13 @@ static outcome draw_state(renderer *r, int level, const json_t *recipe,
     outcome o = try_state(r, level, recipe, anew);
     bool is_short = one && o.done == SNOW_STATUS_NO_MEMORY;
     say_now(is_short);
-    if (is_short && !is_in_vain(r, level, recipe))
-        o = draw_emptied(r, level, recipe);
+    if (is_short) {
+        json_t *need = need_of(recipe, level);
+        const bool in_vain = r->vain && json_equal(need, r->vain);
+        json_decref(need);
+        if (!in_vain)
+            o = draw_emptied(r, level, recipe);
+    }
     if (one && o.done == SNOW_STATUS_NO_MEMORY)
         say_no_room(r, level);
     return o;

@@ -5,14 +5,6 @@
 
 #include <stdio.h>
 
-/* "-" reads standard input, so that a picture can come from a pipe: render -o -
- * | compare - b.png. */
-static int load_picture(snow_context *context, const char *path,
-                        snow_image **out) {
-    snow_status status = snow_image_load(context, path, out);
-    return status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
-}
-
 /* psnr is null for equal pictures, whose PSNR is infinite. */
 static int report_json(const snow_image_difference *d, double tolerance,
                        bool within) {
@@ -89,10 +81,11 @@ int cmd_compare(const options *opts) {
     snow_image *images[2] = {NULL, NULL};
     snow_image_difference difference = {.size = sizeof difference};
     int done = open_context(opts, &context);
-    if (done == CONTINUE)
-        done = load_picture(context, opts->operands[0], &images[0]);
-    if (done == CONTINUE)
-        done = load_picture(context, opts->operands[1], &images[1]);
+    /* "-" reads standard input, so that a picture can come from a pipe:
+     * render -o - | compare - b.png. */
+    for (int i = 0; i < 2 && done == CONTINUE; i++)
+        done = check_status(
+            context, snow_image_load(context, opts->operands[i], &images[i]));
     if (done == CONTINUE)
         done = judge_sizes(opts, images);
     if (done == CONTINUE) {

@@ -28,17 +28,6 @@ int save_volume(snow_context *context, const options *opts,
     return SNOW_STATUS_OK;
 }
 
-/* --dims and --type describe raw input.  Any other input states its own type,
- * so for it --type is the type to convert to. */
-static snow_type wanted_type(const options *opts, snow_volume_options *data) {
-    snow_type type = opts->as;
-    if (!type && data->type && !data->dims[0]) {
-        type = data->type;
-        data->type = SNOW_TYPE_NONE;
-    }
-    return type;
-}
-
 /* Whether the format that this file name selects stores slope and intercept. */
 static bool keeps_scaling(const char *path) {
     static const char *const suffixes[] = {".nii", ".nii.gz", ".mha"};
@@ -97,8 +86,14 @@ static int change_type(snow_context *context, const options *opts,
 
 static int convert(snow_context *context, const options *opts) {
     snow_volume_options data = data_options(opts);
-    snow_type type = wanted_type(opts, &data);
+    snow_type type = opts->as;
     snow_volume *volume = NULL;
+    /* --dims and --type describe raw input.  Any other input states its own
+     * type, so for it --type is the type to convert to. */
+    if (!type && data.type && !data.dims[0]) {
+        type = data.type;
+        data.type = SNOW_TYPE_NONE;
+    }
     snow_status status =
         snow_volume_open(context, opts->operands[0], &data, &volume);
     if (status != SNOW_STATUS_OK)

@@ -97,14 +97,6 @@ static json_t *words_json(const char *words) {
     return list;
 }
 
-/* Lists names until the library returns NULL. */
-static json_t *list_json(const char *(*at)(size_t)) {
-    json_t *list = json_array();
-    for (size_t i = 0; at(i); i++)
-        json_array_append_new(list, json_string(at(i)));
-    return list;
-}
-
 /* The versions of the optional libraries; null for a library that is
  * missing. */
 static json_t *libraries_json(void) {
@@ -122,7 +114,7 @@ static int report_json(void) {
     json_t *o = json_object();
     json_object_set_new(o, "version", json_string(snow_version()));
     for (size_t i = 0; i < LISTS; i++)
-        json_object_set_new(o, lists[i].key, list_json(lists[i].at));
+        json_object_set_new(o, lists[i].key, json_names(lists[i].at));
     json_object_set_new(o, "ffmpeg", json_boolean(encoder_is_there()));
     json_object_set_new(o, "libraries", libraries_json());
     json_object_set_new(o, "isa_found", words_json(snow_isa_found()));
@@ -153,13 +145,6 @@ static void print_list(const char *key, const char *(*at)(size_t)) {
     printf("\n");
 }
 
-static void print_libraries(void) {
-    const char *name, *version, *formats;
-    for (size_t i = 0; (name = snow_library_name(i, &version, &formats)); i++)
-        printf("%-16s%s %s (%s)\n", i ? "" : "libraries", name,
-               version ? version : "is missing", formats);
-}
-
 static int report_text(void) {
     print_row("version", snow_version());
     for (size_t i = 0; i < LISTS; i++)
@@ -170,7 +155,10 @@ static int report_text(void) {
            : writes_webp()
                ? "; other movies as frames only: ffmpeg was not found"
                : "frames only: ffmpeg was not found");
-    print_libraries();
+    const char *name, *version, *formats;
+    for (size_t i = 0; (name = snow_library_name(i, &version, &formats)); i++)
+        printf("%-16s%s %s (%s)\n", i ? "" : "libraries", name,
+               version ? version : "is missing", formats);
     printf("%-16sfound %s; used %s\n", "isa", snow_isa_found(),
            snow_isa_used());
     printf("%-16s%d\n", "threads", process_processors());

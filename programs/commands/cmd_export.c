@@ -103,8 +103,8 @@ static bool append_file(page_text *t, FILE *file) {
 
 /* --- the page ------------------------------------------------------------- */
 
-static FILE *open_page(char path[PATH_MAX]) {
-    char self[PATH_MAX];
+static int read_page(page_text *out) {
+    char path[PATH_MAX] = "viewer.html", self[PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
     self[length > 0 ? length : 0] = 0;
     char *slash = strrchr(self, '/');
@@ -114,12 +114,6 @@ static FILE *open_page(char path[PATH_MAX]) {
                  places[i - 1]);
         page = fopen(path, "rb");
     }
-    return page;
-}
-
-static int read_page(page_text *out) {
-    char path[PATH_MAX] = "viewer.html";
-    FILE *page = open_page(path);
     if (!page)
         return fail_usage("export: %s is missing; install Debian's package "
                           "snowglass-web, or run ./dev web in the sources and "
@@ -166,7 +160,7 @@ static int open_volume(snow_context *context, const options *opts,
         snow_volume_close(*out);
         *out = made;
     }
-    return status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
+    return check_status(context, status);
 }
 
 /* Packs a file in base64. */
@@ -227,20 +221,7 @@ static int append_volume(snow_context *context, const options *opts,
     return done;
 }
 
-/* A page's volume has no time: it becomes part of the title. */
-static void add_time(const options *opts, const snow_volume_info *info,
-                     json_t *tree) {
-    char time[256], title[512];
-    if (!opts->annotate.time ||
-        !snow_time_text(info, opts->annotate.format, time, sizeof time))
-        return;
-    snprintf(title, sizeof title, "%.250s%s%s", opts->title ? opts->title : "",
-             opts->title ? "\n" : "", time);
-    json_object_set_new(tree, "title", json_string(title));
-    json_object_del(tree, "annotate");
-}
-
-/* Nor a quantity: it stands in the legend. */
+/* A page's volume has no quantity: it stands in the legend. */
 static void add_legend(const options *opts, const snow_volume_info *info,
                        json_t *tree) {
     const legend_value *legend = &opts->legend;
@@ -278,7 +259,15 @@ static char *recipe_text(const options *opts, const snow_volume_info *info,
         json_object_set_new(tree, "preset", json_string("labels"));
     if (opts->legend.bar)
         add_legend(opts, info, tree);
-    add_time(opts, info, tree);
+    char time[256]; /* nor a time: it becomes part of the title */
+    if (opts->annotate.time &&
+        snow_time_text(info, opts->annotate.format, time, sizeof time)) {
+        json_object_set_new(tree, "title",
+                            json_sprintf("%.250s%s%s",
+                                         opts->title ? opts->title : "",
+                                         opts->title ? "\n" : "", time));
+        json_object_del(tree, "annotate");
+    }
     char *made = json_dumps(tree, JSON_COMPACT | JSON_FORM);
     json_decref(tree);
     return made;

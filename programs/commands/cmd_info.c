@@ -49,8 +49,6 @@ static snow_status gather_facts(facts *f) {
     return status;
 }
 
-/* --- orientation ---------------------------------------------------------- */
-
 /* --- text ----------------------------------------------------------------- */
 
 /* Names of a file, as messages print them: their control characters could forge
@@ -141,14 +139,6 @@ static void print_times(const facts *f) {
                *info->calendar ? " calendar)" : "");
 }
 
-/* What the values are. */
-static void print_quantity(const snow_volume_info *info) {
-    if (*info->quantity || *info->value_unit)
-        printf("%-14s%s%s%s%s\n", "quantity", info->quantity,
-               *info->value_unit ? " (" : "", info->value_unit,
-               *info->value_unit ? ")" : "");
-}
-
 /* The geometry of the file; scale and time steps only if they matter. */
 static void print_geometry(const facts *f) {
     const snow_volume_info *info = f->info;
@@ -159,7 +149,10 @@ static void print_geometry(const facts *f) {
            "dims", info->dims[0], info->dims[1], info->dims[2],
            f->measures.voxels);
     printf("%-14s%s\n", "type", snow_type_name(info->type));
-    print_quantity(info);
+    if (*info->quantity || *info->value_unit)
+        printf("%-14s%s%s%s%s\n", "quantity", info->quantity,
+               *info->value_unit ? " (" : "", info->value_unit,
+               *info->value_unit ? ")" : "");
     printf("%-14s%g x %g x %g%s%s\n", "spacing", info->spacing[0],
            info->spacing[1], info->spacing[2], info->unit[0] ? " " : "",
            info->unit);

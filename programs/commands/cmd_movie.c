@@ -6,37 +6,20 @@
  * values that appear later.  So all steps are read twice: first for their
  * values, then to be rendered. */
 #include "commands/commands.h"
-#include "movie/movie_steps.h"
+#include "movie/movie_files.h"
+#include "movie/movie_render.h"
 #include "run/log.h"
 #include "run/start.h"
 
 #include <stdlib.h>
 
-static int check_movie(const options *opts) {
-    if (opts->operand_count == 0)
-        return fail_usage(
-            "movie: no input given; give snowglass movie INPUT... -o OUT");
-    return movie_check(opts);
-}
-
-/* People who ask for a movie of one volume often mean a turntable. */
-static void warn_still(const options *opts, const shot_list *list) {
-    if (list->count == 1 && opts->verbosity >= 0)
-        say("note: this is one time step, so the movie is a still; for a movie "
-            "around the volume use turntable, for a picture render");
-}
-
-/* Ranks learn how many steps the look is chosen from. */
-static void share_looked(shot_list *list) {
-    const int looked = process_share((int)list->looked);
-    if (looked < list->looked)
-        list->looked = looked;
-}
-
 /* Lists the steps.  The rank that writes also checks the output. */
 static int prepare_movie(const options *opts, shot_renderer *shots,
                          step_files *files, shot_list *list, movie **s) {
-    int done = check_movie(opts);
+    int done = opts->operand_count
+                   ? movie_check(opts)
+                   : fail_usage("movie: no input given; give snowglass movie "
+                                "INPUT... -o OUT");
     if (done == CONTINUE)
         done = steps_find(opts, files);
     done = process_agree(done);
@@ -45,14 +28,20 @@ static int prepare_movie(const options *opts, shot_renderer *shots,
     if (done != CONTINUE)
         return done;
     done = steps_list(files, shots, list);
-    if (done == CONTINUE)
-        warn_still(opts, list);
+    /* People who ask for a movie of one volume often mean a turntable. */
+    if (done == CONTINUE && list->count == 1 && opts->verbosity >= 0)
+        say("note: this is one time step, so the movie is a still; for a movie "
+            "around the volume use turntable, for a picture render");
     if (done == CONTINUE && process_talks())
         done = movie_open(opts, list, s);
     done = process_agree(done);
-    if (done == CONTINUE)
-        share_looked(list);
-    return done;
+    if (done != CONTINUE)
+        return done;
+    /* ranks learn how many steps the look is chosen from */
+    const int looked = process_share((int)list->looked);
+    if (looked < list->looked)
+        list->looked = looked;
+    return CONTINUE;
 }
 
 /* Chooses the transfer function, then makes the frames. */
@@ -65,8 +54,7 @@ static int run_movie(const options *opts, shot_renderer *shots,
     if (done != CONTINUE)
         return done;
     shots->count = list->count;
-    movie_renderer renderer = shots_renderer(shots);
-    return movie_run(*s, opts, list, &renderer, begin);
+    return movie_run(*s, opts, list, shots, begin);
 }
 
 int cmd_movie(const options *opts) {

@@ -26,6 +26,9 @@ static bool is_stream(const char *path) {
 }
 
 int check_settings(const options *opts) {
+    if (same_output(opts->stats, opts->output))
+        return fail_usage(
+            "--stats: is the same file as --output; name two files");
     if (strcmp(opts->method, "original") == 0 &&
         strcmp(opts->encoding, "auto") != 0)
         return fail_usage("--encoding: method original uses no encoding; "
@@ -40,10 +43,6 @@ int check_settings(const options *opts) {
                           "places the camera; give only one of them");
     int done = annotations_check(opts);
     return done == CONTINUE ? check_look(opts) : done;
-}
-
-static bool same_output(const char *a, const char *b) {
-    return a && b && (strcmp(a, b) == 0 || same_place(a, b));
 }
 
 /* Whether the depths become channel Z of the picture's own file. */
@@ -89,10 +88,6 @@ int check_picture(const options *opts) {
         return fail_usage("%s: --background and --bits work only for PNG, "
                           "WebP and JPEG; remove them or name a .png",
                           opts->output);
-    if (opts->stats && (strcmp(opts->stats, opts->output) == 0 ||
-                        same_place(opts->stats, opts->output)))
-        return fail_usage(
-            "--stats: is the same file as --output; name two files");
     if (show_check(opts) != CONTINUE)
         return SNOW_STATUS_BAD_USAGE;
     if (is_stream(opts->output) && !opts->show && isatty(STDOUT_FILENO))

@@ -65,41 +65,26 @@ static double position_of(const slice_work *w, double index) {
     return at;
 }
 
-static int refuse_place(const slice_work *w) {
-    const char *unit = unit_of(&w->whole);
-    double last = (double)w->whole.dims[w->axis] - 1;
-    return fail_usage("--at: '%s' is no slice across %s: must be 0 to %g, or a "
-                      "position from %g%s to %g%s",
-                      w->opts.at, axis_name(w), last, position_of(w, 0), unit,
-                      position_of(w, last), unit);
-}
-
 /* A number, or a position with the unit of the world behind it. */
 static int find_place(slice_work *w) {
-    const char *at = w->opts.at;
+    const char *at = w->opts.at, *unit = unit_of(&w->whole);
     double last = (double)w->whole.dims[w->axis] - 1;
     char *end = NULL;
     double index = at ? strtod(at, &end) : floor((last + 1) / 2);
-    if (at && end > at && strcmp(end, unit_of(&w->whole)) == 0)
+    if (at && end > at && strcmp(end, unit) == 0)
         index = rint((index - position_of(w, 0)) /
                      w->whole.matrix[w->world][w->axis]);
     else if (at && (end == at || *end))
         index = NAN;
     if (!(index >= 0 && index <= last) || index < floor(index) ||
         index > floor(index))
-        return refuse_place(w);
+        return fail_usage("--at: '%s' is no slice across %s: must be 0 to %g, "
+                          "or a position from %g%s to %g%s",
+                          at, axis_name(w), last, position_of(w, 0), unit,
+                          position_of(w, last), unit);
     w->index = (int64_t)index;
     w->position = position_of(w, index);
     return CONTINUE;
-}
-
-/* The nearest axis of the world, and how far the slice's normal is from it. */
-static double nearest_axis(const double normal[3], int *axis) {
-    *axis = 0;
-    for (int i = 1; i < 3; i++)
-        if (fabs(normal[i]) > fabs(normal[*axis]) + 1e-6)
-            *axis = i;
-    return acos(fmin(fabs(normal[*axis]), 1)) * 180 / acos(-1);
 }
 
 /* Of a volume that is a single slice, the cut that shows its face. */
@@ -126,7 +111,14 @@ static int find_slice(slice_work *w) {
                                          &w->view, &w->axis);
     if (status != SNOW_STATUS_OK)
         return fail_status(w->context, status);
-    double angle = nearest_axis(w->view.back, &w->world);
+    /* The nearest axis of the world, and how far the slice's normal is from
+     * it. */
+    const double *normal = w->view.back;
+    w->world = 0;
+    for (int i = 1; i < 3; i++)
+        if (fabs(normal[i]) > fabs(normal[w->world]) + 1e-6)
+            w->world = i;
+    double angle = acos(fmin(fabs(normal[w->world]), 1)) * 180 / acos(-1);
     if (angle > OBLIQUE && strlen(axis_name(w)) > 1 && w->opts.verbosity >= 0)
         say("note: slices of the grid are %.0f degrees off %s: this is the "
             "nearest of them, as it is",
@@ -142,53 +134,34 @@ static bool has_colors(const slice_work *w) {
 
 /* --- reading -------------------------------------------------------------- */
 
-/* Standard input can be read only once, so all of it is. */
-static bool is_piped(const slice_work *w) {
-    return strcmp(w->path, "-") == 0;
-}
-
-static int inspect(slice_work *w) {
-    snow_volume_options data = data_options(&w->opts);
-    snow_volume_info_init(&w->whole);
-    snow_status status =
-        snow_volume_inspect(w->context, w->path, &data, &w->whole);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(w->context, status);
-}
-
 static void crop_to_slice(slice_work *w) {
     int64_t *crop = w->opts.crop[w->axis];
     crop[0] += w->index;
     crop[1] = crop[0] + 1;
 }
 
-/* Copies the voxels of the slice: rows of the whole where they lie so. */
-static void copy_slice(const slice_work *w, char *out) {
+/* The slice in the place of the whole, as a crop would have read it. */
+static int cut_slice(slice_work *w) {
+    snow_volume_info info = w->whole;
+    snow_volume *slice = NULL;
     const int64_t *dims = w->whole.dims;
-    const size_t size = snow_type_size(w->whole.type);
+    const size_t size = snow_type_size(info.type);
     const size_t steps[3] = {size, size * (size_t)dims[0],
                              size * (size_t)(dims[0] * dims[1])};
     const int u = w->axis == 0, v = w->axis == 2 ? 1 : 2;
+    info.dims[w->axis] = 1;
+    for (int row = 0; row < 3; row++)
+        info.matrix[row][3] += info.matrix[row][w->axis] * (double)w->index;
+    w->cut = malloc(size * (size_t)(dims[u] * dims[v]));
+    if (!w->cut)
+        return fail_memory("out of memory for the slice; close other programs");
+    char *out = w->cut;
     const char *from = snow_volume_voxels(w->volume);
     from += (size_t)w->index * steps[w->axis];
     for (int64_t b = 0; b < dims[v]; b++)
         for (int64_t a = 0; a < dims[u]; a++, out += size)
             memcpy(out, from + (size_t)a * steps[u] + (size_t)b * steps[v],
                    size);
-}
-
-/* The slice in the place of the whole, as a crop would have read it. */
-static int cut_slice(slice_work *w) {
-    snow_volume_info info = w->whole;
-    snow_volume *slice = NULL;
-    info.dims[w->axis] = 1;
-    for (int row = 0; row < 3; row++)
-        info.matrix[row][3] += info.matrix[row][w->axis] * (double)w->index;
-    w->cut = malloc(snow_type_size(info.type) *
-                    (size_t)(info.dims[0] * info.dims[1] * info.dims[2]));
-    if (!w->cut)
-        return fail_memory("out of memory for the slice; close other programs");
-    copy_slice(w, w->cut);
     snow_status status = snow_volume_wrap(w->context, &info, w->cut, &slice);
     if (status != SNOW_STATUS_OK)
         return fail_status(w->context, status);
@@ -214,10 +187,14 @@ static int open_piped(slice_work *w) {
 }
 
 static int open_slice(slice_work *w) {
-    if (is_piped(w))
+    /* Standard input can be read only once, so all of it is. */
+    if (strcmp(w->path, "-") == 0)
         return open_piped(w);
+    snow_volume_options data = data_options(&w->opts);
+    snow_volume_info_init(&w->whole);
     show_warnings(&w->opts, w->context, false); /* they come again */
-    int done = inspect(w);
+    int done = check_status(
+        w->context, snow_volume_inspect(w->context, w->path, &data, &w->whole));
     show_warnings(&w->opts, w->context, true);
     if (done == CONTINUE)
         done = find_slice(w);
@@ -264,19 +241,6 @@ static snow_status draw(slice_work *w) {
     return status;
 }
 
-static int open_channels(slice_work *w) {
-    snow_status status =
-        channels_look(NULL, &w->opts, &w->whole, &w->channels.list.picks[0],
-                      w->volume, &w->transfer);
-    channels_close_volumes(&w->channels);
-    if (status == SNOW_STATUS_OK)
-        status = channels_open(&w->opts, w->context, w->path, false, 0,
-                               &w->channels);
-    return status == SNOW_STATUS_OK
-               ? CONTINUE
-               : fail_volume(w->context, status, name_of_input(w->path));
-}
-
 /* Labels are drawn as such where nothing else is asked, as in a picture. */
 static int open_colors(slice_work *w) {
     static options automatic; /* large */
@@ -287,8 +251,16 @@ static int open_colors(slice_work *w) {
                  opts->scale.log || opts->scale.symlog != 0 ||
                  options_range(opts).kind != SNOW_RANGE_AUTO;
     int done = CONTINUE;
-    if (w->channels.list.count)
-        return open_channels(w);
+    if (w->channels.list.count) {
+        snow_status status =
+            channels_look(NULL, opts, &w->whole, &w->channels.list.picks[0],
+                          w->volume, &w->transfer);
+        channels_close_volumes(&w->channels);
+        if (status == SNOW_STATUS_OK)
+            status = channels_open(opts, w->context, w->path, false, 0,
+                                   &w->channels);
+        return check_volume(w->context, status, name_of_input(w->path));
+    }
     if (!asked)
         done = open_look(w->context, &automatic, w->volume, &w->transfer);
     if (done != CONTINUE ||
@@ -316,10 +288,7 @@ static int draw_first(slice_work *w) {
         done = open_colors(w);
     if (done != CONTINUE)
         return done;
-    snow_status status = draw(w);
-    return status == SNOW_STATUS_OK
-               ? CONTINUE
-               : fail_volume(w->context, status, name_of_input(w->path));
+    return check_volume(w->context, draw(w), name_of_input(w->path));
 }
 
 static int make_picture(slice_work *w) {
@@ -340,9 +309,7 @@ static int make_picture(slice_work *w) {
     if (status == SNOW_STATUS_NO_MEMORY && w->channels.list.count > 1 &&
         !opts->channels.count)
         return draw_first(w);
-    return status == SNOW_STATUS_OK
-               ? CONTINUE
-               : fail_volume(w->context, status, name_of_input(w->path));
+    return check_volume(w->context, status, name_of_input(w->path));
 }
 
 /* The description of a look without its opacities, which a slice ignores. */
@@ -395,23 +362,19 @@ static snow_status make_overlay(slice_work *w, snow_overlay **out) {
     return annotations_make(&annotations, 0, -1, NULL, w->context, out);
 }
 
-/* The same slice in colours. */
-static int draw_colors(slice_work *w) {
-    w->transfer = NULL;
-    w->image = NULL;
-    int done = open_colors(w);
-    if (done != CONTINUE)
-        return done;
-    snow_status status = draw(w);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(w->context, status);
-}
-
-/* Shows what a PNG would, also where values are written. */
+/* Shows what a PNG would: where values are written, the same slice in
+ * colours. */
 static int show_slice(const slice_work *w) {
     slice_work shown = *w;
     snow_overlay *overlay = NULL;
-    int done = has_colors(w) ? CONTINUE : draw_colors(&shown);
+    int done = CONTINUE;
+    if (!has_colors(w)) {
+        shown.transfer = NULL;
+        shown.image = NULL;
+        done = open_colors(&shown);
+        if (done == CONTINUE)
+            done = check_status(w->context, draw(&shown));
+    }
     shown.opts.output = "-";
     snow_image_options form = picture_form(&shown.opts);
     if (done == CONTINUE) {
@@ -442,8 +405,7 @@ static int write_slice(slice_work *w) {
     if (status == SNOW_STATUS_OK && !shown)
         status = snow_image_save(w->image, opts->output, &form);
     progress_end(opts);
-    int done =
-        status == SNOW_STATUS_OK ? CONTINUE : fail_status(w->context, status);
+    int done = check_status(w->context, status);
     if (done == CONTINUE && opts->show)
         done = show_slice(w);
     snow_overlay_free(overlay);

@@ -14,18 +14,11 @@
 
 /* --- list ----------------------------------------------------------------- */
 
-static json_t *names_json(const char *(*name)(size_t)) {
-    json_t *list = json_array();
-    for (size_t i = 0; name(i); i++)
-        json_array_append_new(list, json_string(name(i)));
-    return list;
-}
-
 static int list(const options *opts) {
     if (opts->json) {
         json_t *o = json_object();
-        json_object_set_new(o, "presets", names_json(snow_preset_name));
-        json_object_set_new(o, "colormaps", names_json(snow_colormap_name));
+        json_object_set_new(o, "presets", json_names(snow_preset_name));
+        json_object_set_new(o, "colormaps", json_names(snow_colormap_name));
         return print_json(o);
     }
     printf("presets (--preset NAME):\n");
@@ -96,11 +89,6 @@ static int find_transfer(const options *opts, const char *name, named *out) {
     out->kind = snow_look_file_format(out->tf);
     out->look = *snow_look_file_look(out->tf);
     return CONTINUE;
-}
-
-static void lose(named *n) {
-    snow_look_file_free(n->tf);
-    snow_context_free(n->context);
 }
 
 /* --- show ----------------------------------------------------------------- */
@@ -300,7 +288,8 @@ static int run_named(const options *opts, const char *name,
     int done = find_transfer(opts, name, &n);
     if (done == CONTINUE)
         done = act(opts, &n);
-    lose(&n);
+    snow_look_file_free(n.tf);
+    snow_context_free(n.context);
     return done;
 }
 

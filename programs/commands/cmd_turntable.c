@@ -63,10 +63,8 @@ int cmd_turntable(const options *opts) {
     movie *s = NULL;
     shot_renderer shots = {.count = 0};
     int done = prepare_turntable(opts, &list, &shots, &s);
-    if (done == CONTINUE) {
-        movie_renderer renderer = shots_renderer(&shots);
-        done = movie_run(s, opts, &list, &renderer, begin);
-    }
+    if (done == CONTINUE)
+        done = movie_run(s, opts, &list, &shots, begin);
     movie_close(s);
     shots_close(&shots);
     free(list.shots);

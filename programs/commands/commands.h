@@ -4,7 +4,6 @@
 #define COMMANDS_H
 
 #include "options/options.h"
-#include "picture/settings.h"
 
 int cmd_render(const options *opts);
 int cmd_turntable(const options *opts);
@@ -58,6 +57,17 @@ int save_volume(snow_context *context, const options *opts,
 /* Refuses look options that contradict each other, before a volume is read.
  * Returns CONTINUE or an exit code. */
 int check_look(const options *opts);
+
+/* Fills the settings from the options, except the opacity length, which depends
+ * on the volume's unit. */
+void fill_settings(const options *opts, snow_settings *out);
+
+/* Make the settings and the view that the options request.  Return CONTINUE or
+ * an exit code. */
+int make_settings(const options *opts, const snow_volume_info *info,
+                  snow_settings *out);
+int make_view(snow_context *context, const options *opts,
+              const snow_volume_info *info, snow_view *out);
 
 /* Makes the transfer function that the options request.  Returns CONTINUE or an
  * exit code. */

@@ -82,12 +82,6 @@ static bool stands_alone(const char *path, const snow_volume_info *info) {
            (strcmp(info->format, "tiff") == 0 && info->dims[2] > 1);
 }
 
-/* The suffix of a name; "" also for numbers, as in slice.001. */
-static const char *suffix_of(const char *name) {
-    const char *dot = strrchr(name, '.');
-    return dot && dot[1 + strspn(dot + 1, "0123456789")] ? dot : "";
-}
-
 /* Of names with one suffix no more are read than up to the first slice: each
  * slice of a series reads the headers of all others. */
 static bool holds_volumes(const options *opts, const char *folder) {
@@ -98,7 +92,10 @@ static bool holds_volumes(const options *opts, const char *folder) {
     bool found = false;
     int count = entries_of(folder, &entries);
     for (int i = 0; i < count && !found; i++) {
-        const char *suffix = suffix_of(entries[i]->d_name);
+        /* The suffix of a name; "" also for numbers, as in slice.001. */
+        const char *dot = strrchr(entries[i]->d_name, '.');
+        const char *suffix =
+            dot && dot[1 + strspn(dot + 1, "0123456789")] ? dot : "";
         if (!path_in(folder, entries[i]->d_name, path) ||
             (slices && strcmp(slices, suffix) == 0 && !is_folder(path)) ||
             has_dicom_mark(path) || !probe(opts, path, &info))
@@ -132,15 +129,6 @@ typedef struct row {
     snow_volume_info info;
     char patient[256]; /* "": not requested, or not in the file */
 } row;
-
-static void add_row(const row *r, json_t *list) {
-    json_t *object = json_object();
-    json_object_set_new(object, "path", json_string(r->path));
-    info_set_geometry(object, &r->info);
-    if (*r->patient)
-        json_object_set_new(object, "patient", json_string(r->patient));
-    json_array_append_new(list, object);
-}
 
 static void print_row(const row *r) {
     char text[256];
@@ -183,12 +171,17 @@ static int list_file(const options *opts, const char *path, json_t *list) {
     int done = open_context(opts, &context);
     if (done == CONTINUE)
         done = info_open(context, opts, path, &r.info, NULL);
-    if (done == CONTINUE) {
+    if (done == CONTINUE)
         find_patient(context, opts, path, &r);
-        if (list)
-            add_row(&r, list);
-        else
-            print_row(&r);
+    if (done == CONTINUE && list) {
+        json_t *object = json_object();
+        json_object_set_new(object, "path", json_string(r.path));
+        info_set_geometry(object, &r.info);
+        if (*r.patient)
+            json_object_set_new(object, "patient", json_string(r.patient));
+        json_array_append_new(list, object);
+    } else if (done == CONTINUE) {
+        print_row(&r);
     }
     snow_context_free(context);
     return done;
@@ -212,21 +205,18 @@ static void list_folder(const options *opts, const char *folder, json_t *list) {
     free_entries(entries, count);
 }
 
-static int list_operand(const options *opts, const char *path, json_t *list) {
-    options one = *opts;
-    one.operands = (char *[]){(char *)path};
-    one.operand_count = 1;
-    if (!info_is_list(&one))
-        return list_file(opts, path, list);
-    list_folder(opts, path, list);
-    return CONTINUE;
-}
-
 int info_list(const options *opts) {
     json_t *list = opts->json ? json_array() : NULL;
     int fault = SNOW_STATUS_OK;
     for (int i = 0; i < opts->operand_count; i++) {
-        int done = list_operand(opts, opts->operands[i], list);
+        options one = *opts;
+        int done = CONTINUE;
+        one.operands += i;
+        one.operand_count = 1;
+        if (info_is_list(&one))
+            list_folder(opts, *one.operands, list);
+        else
+            done = list_file(opts, *one.operands, list);
         if (done != CONTINUE && fault == SNOW_STATUS_OK)
             fault = done;
     }

@@ -139,8 +139,7 @@ int info_open(snow_context *context, const options *opts, const char *path,
     snow_volume_options data = data_options(opts);
     snow_status status = open_or_inspect(context, path, &data, info, out);
     if (status != SNOW_STATUS_BAD_INPUT || data.allow_gaps || !is_folder(path))
-        return status == SNOW_STATUS_OK ? CONTINUE
-                                        : fail_status(context, status);
+        return check_status(context, status);
     snprintf(fault, sizeof fault, "%s", snow_context_message(context));
     data.allow_gaps = true;
     if (open_or_inspect(context, path, &data, info, out) != SNOW_STATUS_OK) {

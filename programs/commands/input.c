@@ -52,8 +52,7 @@ const char *name_of_input(const char *path) {
 int open_input(snow_context *context, const options *opts, const char *path,
                snow_volume **out) {
     snow_volume_options data = data_options(opts);
-    snow_status status = snow_volume_open(context, path, &data, out);
-    return status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
+    return check_status(context, snow_volume_open(context, path, &data, out));
 }
 
 /* What a file says.  Notes are left to the reading itself. */
@@ -65,8 +64,7 @@ static int inspect(const options *opts, const char *path,
     snow_status status = snow_context_new(NULL, &context);
     if (status == SNOW_STATUS_OK)
         status = snow_volume_inspect(context, path, &data, info);
-    int done =
-        status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
+    int done = check_status(context, status);
     snow_context_free(context);
     return done;
 }
@@ -248,8 +246,8 @@ snow_look look_options(const options *opts) {
 int open_look(snow_context *context, const options *opts,
               const snow_volume *volume, snow_transfer **out) {
     snow_look look = look_options(opts);
-    snow_status status = snow_transfer_new_for_volume(volume, &look, out);
-    return status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
+    return check_status(context,
+                        snow_transfer_new_for_volume(volume, &look, out));
 }
 
 /* Short enough for the single line that render prints. */

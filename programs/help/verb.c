@@ -120,12 +120,6 @@ static void print_common(const verb_row *verb) {
         }
 }
 
-static void print_examples(const verb_row *verb) {
-    for (size_t i = 0; i < sizeof examples / sizeof *examples; i++)
-        for (int n = 0; n < 3 && examples[i].verb == verb->bit; n++)
-            printf("%s  %s\n", n ? "" : "\nexamples:\n", examples[i].lines[n]);
-}
-
 int help_verb_page(const verb_row *verb) {
     if (verb->bit == VERB_BENCH) { /* it reads and describes its own options */
         char *words[] = {NULL, "--help", NULL};
@@ -136,7 +130,9 @@ int help_verb_page(const verb_row *verb) {
     print_common(verb);
     if (verb->bit == VERB_PHANTOM)
         help_names("phantoms", snow_phantom_name, snow_phantom_description);
-    print_examples(verb);
+    for (size_t i = 0; i < sizeof examples / sizeof *examples; i++)
+        for (int n = 0; n < 3 && examples[i].verb == verb->bit; n++)
+            printf("%s  %s\n", n ? "" : "\nexamples:\n", examples[i].lines[n]);
     printf("\nall options, by topic (snowglass help TOPIC):\n");
     help_topics(verb->bit);
     printf("\nsnowglass help NAME explains an option (help window) or a preset "

@@ -171,17 +171,13 @@ static snow_status copy_image(frame_slot *slot, const snow_image *from,
     return SNOW_STATUS_OK;
 }
 
-/* Waits for a free slot; the lock is held on return. */
-static snow_status wait_for_room(frame_queue *queue) {
+snow_status frames_put(frame_queue *queue, int64_t index, snow_image *image,
+                       const snow_image *depth) {
+    /* Waits for a free slot. */
     pthread_mutex_lock(&queue->lock);
     while (queue->put - queue->committed == (uint64_t)queue->slots)
         pthread_cond_wait(&queue->changed, &queue->lock);
-    return queue->status;
-}
-
-snow_status frames_put(frame_queue *queue, int64_t index, snow_image *image,
-                       const snow_image *depth) {
-    snow_status status = wait_for_room(queue);
+    snow_status status = queue->status;
     frame_slot *slot = slot_of(queue, queue->put);
     pthread_mutex_unlock(&queue->lock);
     if (status != SNOW_STATUS_OK)

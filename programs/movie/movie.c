@@ -1,19 +1,7 @@
-/* movie.c - the loop over the frames, and what becomes of each.
- *
- * The thread that renders puts pictures into a queue; its workers make a file
- * of each, and the bytes for ffmpeg.  A frame's way:
- *
- *   render -> copy -> compress aside, sync | record, rename, bytes to ffmpeg
- *                     several at once      | one after another
- *
- * Frames that an earlier run has left whole go the second half only, and only
- * where there is an ffmpeg to feed. */
-#include "movie/movie.h"
+/* movie.c - the loop over the frames: what begins before it, and ends after. */
 #include "commands/commands.h"
-#include "movie/frames.h"
-#include "movie/movie_encoder.h"
-#include "movie/movie_place.h"
-#include "movie/movie_record.h"
+#include "movie/movie_frame.h"
+#include "movie/movie_render.h"
 #include "movie/movie_report.h"
 #include "movie/movie_webp.h"
 #include "picture/outputs.h"
@@ -38,25 +26,6 @@
 /* Words that ranks exchange, besides exit codes and CONTINUE. */
 #define PASS (-2) /* the frame is kept, not rendered */
 
-struct movie {
-    const options *opts;
-    const shot_list *list;
-    movie_place place;
-    frame_record record;
-    snow_context *context;
-    frame_queue *queue;
-    movie_encoder encoder;
-    bool encoding; /* ffmpeg runs and takes the frames */
-    bool claimed;  /* the record belongs to this run */
-    bool begun;    /* and has been written */
-    bool made_folder;
-    snow_image_options form;         /* the form of the frames' files */
-    picture_annotations annotations; /* annotations of the frames, known from
-                                the first picture on */
-    bool has_annotations;
-    double *times; /* physical ones of the frames, as their pictures come */
-};
-
 int movie_check(const options *opts) {
     if (!opts->output)
         return fail_usage("no output given; add -o OUT.mp4 or -o f_%%04d.png");
@@ -69,10 +38,6 @@ int movie_check(const options *opts) {
         return fail_usage("%s: --background and --bits work only for PNG, WebP "
                           "and movies; remove them or name a .png",
                           opts->output);
-    if (opts->stats && (strcmp(opts->stats, opts->output) == 0 ||
-                        same_place(opts->stats, opts->output)))
-        return fail_usage(
-            "--stats: is the same file as --output; name two files");
     if (opts->depth && (is_movie || strcmp(opts->depth, opts->output) != 0 ||
                         !snow_image_format_has_depth(opts->output)))
         return fail_usage(
@@ -84,149 +49,11 @@ int movie_check(const options *opts) {
     return done == CONTINUE ? check_settings(opts) : done;
 }
 
-/* --- one frame, by the workers -------------------------------------------- */
-
 static bool needs_encoder(const movie *s) {
     return s->place.format && s->place.format->arguments;
 }
 
-static snow_status fault(frame_slot *slot, const char *path, int number) {
-    snprintf(slot->fault, sizeof slot->fault,
-             "%s: %s; make space or choose another place, then continue with "
-             "--resume",
-             path, strerror(number));
-    return SNOW_STATUS_BAD_OUTPUT;
-}
-
-/* Loads a frame that was kept, for ffmpeg. */
-static snow_status load_frame(const movie *s, frame_slot *slot,
-                              const char *path) {
-    snow_status status = snow_image_load(slot->context, path, &slot->image);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    if (snow_image_width(slot->image) == (int)s->opts->size[0] &&
-        snow_image_height(slot->image) == (int)s->opts->size[1])
-        return SNOW_STATUS_OK;
-    snprintf(slot->fault, sizeof slot->fault,
-             "%s: has another size than the movie; remove it and continue with "
-             "--resume",
-             path);
-    return SNOW_STATUS_BAD_INPUT;
-}
-
-static snow_status fill_bytes(const movie *s, frame_slot *slot,
-                              const snow_image_options *form) {
-    if (!slot->work) /* once: all frames have one size */
-        slot->work =
-            malloc((size_t)s->opts->size[0] * (size_t)s->opts->size[1] * 3);
-    if (!slot->work) {
-        snprintf(
-            slot->fault, sizeof slot->fault,
-            "out of memory for the bytes of a frame; use a smaller --size");
-        return SNOW_STATUS_NO_MEMORY;
-    }
-    snow_image_to_rgb8_with(slot->image, form, slot->work);
-    return SNOW_STATUS_OK;
-}
-
-/* Makes a new frame: its unfinished file and its bytes. */
-static snow_status make_frame(const movie *s, frame_slot *slot) {
-    const movie_shot *shot = &s->list->shots[slot->index];
-    snow_overlay *overlay = NULL;
-    snow_image_options form = s->form;
-    picture_annotations annotations = s->annotations;
-    char path[PATH_MAX];
-    annotations.info.time_value = s->times[slot->index];
-    snow_status status =
-        annotations_make(&annotations, shot->azimuth, shot->step, slot->image,
-                         slot->context, &overlay);
-    form.overlay = overlay;
-    form.depth = slot->depth;
-    place_aside(&s->place, slot->index, path, sizeof path);
-    if (status == SNOW_STATUS_OK)
-        status = snow_image_save(slot->image, path, &form);
-    if (status == SNOW_STATUS_OK && s->encoding)
-        status = fill_bytes(s, slot, &form);
-    snow_overlay_free(overlay);
-    return status;
-}
-
-static snow_status prepare_frame(void *user, frame_slot *slot) {
-    const movie *s = user;
-    char path[PATH_MAX];
-    if (!s->record.kept[slot->index])
-        return make_frame(s, slot);
-    place_frame(&s->place, slot->index, path, sizeof path);
-    snow_status status = load_frame(s, slot, path);
-    return status == SNOW_STATUS_OK && s->encoding
-               ? fill_bytes(s, slot, &s->form)
-               : status;
-}
-
-/* Gives a frame its final name, under which the record lists it already: a run
- * that is killed between the two leaves no frame that nobody knows.  A file of
- * this name that was there before is another program's, and stays, unless a
- * record shows that it may be replaced. */
-static snow_status name_frame(movie *s, frame_slot *slot) {
-    char aside[PATH_MAX], path[PATH_MAX];
-    struct stat what;
-    place_aside(&s->place, slot->index, aside, sizeof aside);
-    place_frame(&s->place, slot->index, path, sizeof path);
-    if (!s->record.replaces && lstat(path, &what) == 0)
-        return fault(slot, path, EEXIST);
-    int64_t bytes = stat(aside, &what) == 0 ? (int64_t)what.st_size : 0;
-    int number = record_add(&s->record, &s->place, s->list, slot->index, bytes);
-    s->begun = s->begun || number == 0;
-    if (number != 0)
-        return fault(slot, s->place.record, number);
-    number = name_output(aside, path, s->record.replaces);
-    return number == 0 ? SNOW_STATUS_OK : fault(slot, path, number);
-}
-
-static snow_status commit(void *user, frame_slot *slot) {
-    movie *s = user;
-    snow_status status = SNOW_STATUS_OK;
-    if (!s->record.kept[slot->index])
-        status = name_frame(s, slot);
-    if (status != SNOW_STATUS_OK || !s->encoding)
-        return status;
-    size_t size = (size_t)s->opts->size[0] * (size_t)s->opts->size[1] * 3;
-    int number = encoder_write(&s->encoder, slot->work, size);
-    return number == 0 ? SNOW_STATUS_OK : fault(slot, "ffmpeg", number);
-}
-
-static void release(void *user, frame_slot *slot) {
-    (void)user;
-    free(slot->work);
-    slot->work = NULL;
-}
-
 /* --- the beginning -------------------------------------------------------- */
-
-/* A movie by ffmpeg has no transparency: without a background it is black.  Its
- * frames are kept as the encoder gets them. */
-static void set_form(movie *s) {
-    snow_image_options_init(&s->form);
-    paint_background(s->opts, &s->form);
-    s->form.flatten |= needs_encoder(s);
-    s->form.bits = options_bits(s->opts);
-    s->form.overwrite = true; /* of unfinished files */
-}
-
-static int open_parts(movie *s, shot_list *list) {
-    int done = place_read(s->opts->output, &s->place);
-    if (done == CONTINUE)
-        done = open_context(s->opts, &s->context);
-    if (done == CONTINUE)
-        done = place_check(s->context, &s->place, s->opts);
-    if (done == CONTINUE && s->opts->stats)
-        done = check_stats_path(s->opts->stats, s->opts->overwrite);
-    if (done == CONTINUE)
-        done = record_open(s->opts, list, &s->place, &s->record);
-    if (done == CONTINUE)
-        set_form(s);
-    return done;
-}
 
 int movie_open(const options *opts, shot_list *list, movie **out) {
     movie *s = calloc(1, sizeof *s);
@@ -241,11 +68,26 @@ int movie_open(const options *opts, shot_list *list, movie **out) {
     s->list = list;
     s->encoder.pipe = -1;
     s->record.file = -1;
-    int done = open_parts(s, list);
+    int done = place_read(opts->output, &s->place);
+    if (done == CONTINUE)
+        done = open_context(opts, &s->context);
+    if (done == CONTINUE)
+        done = place_check(s->context, &s->place, opts);
+    if (done == CONTINUE && opts->stats)
+        done = check_stats_path(opts->stats, opts->overwrite);
+    if (done == CONTINUE)
+        done = record_open(opts, list, &s->place, &s->record);
     if (done != CONTINUE) {
         movie_close(s);
         return done;
     }
+    /* A movie by ffmpeg has no transparency: without a background it is black.
+     * Its frames are kept as the encoder gets them. */
+    snow_image_options_init(&s->form);
+    paint_background(opts, &s->form);
+    s->form.flatten |= needs_encoder(s);
+    s->form.bits = options_bits(opts);
+    s->form.overwrite = true; /* of unfinished files */
     *out = s;
     return CONTINUE;
 }
@@ -323,7 +165,8 @@ static int claim_output(movie *s) {
 /* Prepares the frames' folder, the record, ffmpeg and the queue; removes
  * leftovers. */
 static int begin_parts(movie *s) {
-    const frame_sink sink = {s, prepare_frame, commit, release};
+    const frame_sink sink = {s, movie_frame_prepare, movie_frame_commit,
+                             movie_frame_release};
     struct stat what;
     s->made_folder = s->place.format && stat(s->place.folder, &what) != 0;
     int done = place_make_folder(&s->place);
@@ -354,7 +197,7 @@ typedef struct run {
     movie *s; /* NULL on ranks that do not write */
     const options *opts;
     const shot_list *list;
-    const movie_renderer *renderer;
+    shot_renderer *shots;
     movie_progress progress;
     movie_figures figures;
     snow_image *last; /* the last picture, for its checksum */
@@ -363,33 +206,18 @@ typedef struct run {
     bool shown; /* something is visible in a frame */
 } run;
 
-static int share_word(const run *r, int word) {
-    return r->renderer->share ? r->renderer->share(r->renderer->self, word)
-                              : word;
-}
-
 /* Decides what to do with a frame, on the rank that writes.  A failed write
  * shows here one or some frames later; it is reported when the queue is
  * idle. */
 static int next_word(const run *r, int64_t index) {
     if (!r->s)
         return CONTINUE;
-    if (interrupt_seen())
+    if (interrupt_asked(NULL))
         return EXIT_INTERRUPTED;
     snow_status status = frames_status(r->s->queue);
     if (status != SNOW_STATUS_OK)
         return (int)status;
     return r->s->record.kept[index] ? PASS : CONTINUE;
-}
-
-/* Only ffmpeg needs a frame that exists already. */
-static void pass_kept_frame(run *r, int64_t index) {
-    if (!r->s)
-        return;
-    if (r->s->encoding)
-        (void)frames_put(r->s->queue, index, NULL, NULL);
-    r->figures.kept++;
-    movie_progress_step(&r->progress, index, false);
 }
 
 /* An error of the queue shows in the next word, so that all ranks learn of
@@ -399,17 +227,15 @@ static void hand_over(run *r, int64_t index, snow_image *image) {
         snow_image_free(image);
         return;
     }
-    render_report report = {0};
-    r->renderer->report(r->renderer->self, &report);
+    const render_state *state = &r->shots->state;
+    const render_report report = render_state_report(state);
     movie_figures_add(&r->figures, &report);
-    if (!r->s->has_annotations) /* the queue's lock makes them visible to the
-                                 * workers
-                                 */
-        r->renderer->annotations(r->renderer->self, &r->s->annotations);
+    if (!r->s->has_annotations) /* the queue's lock shows them to workers */
+        r->s->annotations = shots_annotations(r->shots);
     r->s->has_annotations = true;
-    r->s->times[index] = r->renderer->time(r->renderer->self);
+    r->s->times[index] = state->drawn.whole.time_value;
     (void)frames_put(r->s->queue, index, image,
-                     r->renderer->depth(r->renderer->self));
+                     r->opts->depth ? snow_frame_depth(state->frame) : NULL);
     snow_image_free(r->last);
     r->last = image;
     r->shown = r->shown || !picture_is_empty(image);
@@ -423,7 +249,7 @@ static int finish_frames(run *r, int most) {
         int64_t index = r->begun[0];
         r->begun[0] = r->begun[1];
         r->in_flight--;
-        int word = r->renderer->finish(r->renderer->self, &image);
+        int word = shots_finish(r->shots, &image);
         if (word != CONTINUE)
             return word;
         hand_over(r, index, image);
@@ -431,28 +257,27 @@ static int finish_frames(run *r, int most) {
     return CONTINUE;
 }
 
-static int begin_frame(run *r, int64_t index) {
-    int word = r->renderer->begin(r->renderer->self, &r->list->shots[index]);
-    if (word == CONTINUE)
-        r->begun[r->in_flight++] = index;
-    return word;
-}
-
 /* An error ends the loop, but frames that were begun before it are finished. */
 static int render_frames(run *r) {
     int word = CONTINUE;
     for (int64_t i = 0; i < r->list->count && word == CONTINUE; i++) {
-        word = share_word(r, next_word(r, i));
+        word = process_share(next_word(r, i));
         if (word == PASS) {
             word = finish_frames(r, 0);
-            if (word == CONTINUE)
-                pass_kept_frame(r, i);
+            if (word != CONTINUE || !r->s)
+                continue;
+            if (r->s->encoding) /* ffmpeg needs it too */
+                (void)frames_put(r->s->queue, i, NULL, NULL);
+            r->figures.kept++;
+            movie_progress_step(&r->progress, i, false);
             continue;
         }
         if (word == CONTINUE)
-            word = begin_frame(r, i);
-        if (word == CONTINUE)
-            word = finish_frames(r, r->renderer->ahead);
+            word = shots_begin(r->shots, &r->list->shots[i]);
+        if (word == CONTINUE) {
+            r->begun[r->in_flight++] = i;
+            word = finish_frames(r, process_ranks() > 1);
+        }
     }
     int last = finish_frames(r, 0);
     return word == CONTINUE ? last : word;
@@ -559,11 +384,8 @@ static int finish_movie(movie *s, int done) {
 
 /* Comes after the frames are written. */
 static int report_figures(run *r, double begin) {
-    render_report report = {0};
-    render_times times = {0};
-    r->renderer->report(r->renderer->self, &report);
-    if (report.times)
-        times = *report.times;
+    render_report report = render_state_report(&r->shots->state);
+    render_times times = *report.times;
     times.write = frames_seconds(r->s->queue);
     times.total = seconds_now() - begin;
     report.times = &times;
@@ -572,9 +394,8 @@ static int report_figures(run *r, double begin) {
         movie_report(&r->figures, &times);
     if (!r->opts->stats)
         return SNOW_STATUS_OK;
-    return write_json(
-        movie_stats_json(&r->figures, &report, r->renderer->ranks),
-        r->opts->stats, r->opts->overwrite);
+    return write_json(movie_stats_json(&r->figures, &report, process_ranks()),
+                      r->opts->stats, r->opts->overwrite);
 }
 
 /* The rank that writes decides; the others follow its words. */
@@ -584,11 +405,11 @@ static int run_writer(run *r, double begin) {
                    ? begin_parts(r->s)
                    : SNOW_STATUS_NO_MEMORY;
     movie_progress_begin(&r->progress, r->opts, r->list->count);
-    done = share_word(r, done);
+    done = process_share(done);
     if (done == CONTINUE)
         done = render_frames(r);
     movie_progress_end(&r->progress);
-    done = share_word(r, finish_movie(r->s, done));
+    done = process_share(finish_movie(r->s, done));
     if (done == CONTINUE)
         done = report_figures(r, begin);
     /* what frames of an earlier run show is not known */
@@ -600,18 +421,18 @@ static int run_writer(run *r, double begin) {
 }
 
 int movie_run(movie *s, const options *opts, const shot_list *list,
-              const movie_renderer *renderer, double begin) {
-    run r = {.s = renderer->writes ? s : NULL,
+              shot_renderer *shots, double begin) {
+    run r = {.s = process_talks() ? s : NULL,
              .opts = opts,
              .list = list,
-             .renderer = renderer};
+             .shots = shots};
     if (r.s)
         return run_writer(&r, begin);
     interrupt_hold_movie(); /* the rank that writes polls for signals and
                                reports them */
-    int done = share_word(&r, CONTINUE);
+    int done = process_share(CONTINUE);
     if (done == CONTINUE)
         done = render_frames(&r);
-    done = share_word(&r, done);
+    done = process_share(done);
     return done == CONTINUE ? SNOW_STATUS_OK : done;
 }

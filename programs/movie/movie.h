@@ -10,10 +10,7 @@
  * complete; ffmpeg gets the same bytes meanwhile
  *
  * A record beside the frames holds what they were made with and which are done
- * (movie_record.h), so that --resume can continue after any interruption.
- *
- * The renderer is a record of functions: one process, or many ranks of which
- * only the first writes. */
+ * (movie_record.h), so that --resume can continue after any interruption. */
 #ifndef MOVIE_H
 #define MOVIE_H
 
@@ -37,44 +34,7 @@ typedef struct shot_list {
                        none */
 } shot_list;
 
-/* The figures of one or more frames and of the renderer. */
-typedef struct render_report render_report;
-
-/* The renderer.  All ranks call the functions in the same order with the same
- * shots, and all get the same result. */
-typedef struct movie_renderer {
-    void *self;
-
-    /* Begin to render a shot, and finish the one begun first; *image belongs to
-     * the caller, and is NULL on ranks that do not write.  Return CONTINUE, or
-     * an exit code after the error was printed. */
-    int (*begin)(void *self, const movie_shot *shot);
-    int (*finish)(void *self, snow_image **image);
-    int ahead; /* shots to be begun before the one that is finished: 0 or 1 */
-
-    /* The depths of the last picture; NULL if none were requested.  Called on
-     * the rank that writes. */
-    const snow_image *(*depth)(void *self);
-
-    /* The figures of the last picture; the caller fills in their `image`.
-     * Called on the rank that writes. */
-    void (*report)(void *self, render_report *out);
-
-    /* The annotations of the pictures, known after the first one.  Called on
-     * the rank that writes. */
-    void (*annotations)(void *self, picture_annotations *out);
-
-    /* The physical time of the last picture, or NaN. */
-    double (*time)(void *self);
-
-    /* Sends the word of the rank that writes to all.  NULL if there is one
-     * rank. */
-    int (*share)(void *self, int word);
-
-    bool writes; /* this rank writes and prints */
-    int ranks;
-} movie_renderer;
-
+typedef struct shot_renderer shot_renderer;
 typedef struct movie movie;
 
 /* Refuses options that contradict each other.  Returns CONTINUE or an exit
@@ -92,7 +52,7 @@ int movie_open(const options *opts, shot_list *list, movie **out);
  * --stats.  Ranks that do not write pass NULL for `s`.  Returns an exit
  * code. */
 int movie_run(movie *s, const options *opts, const shot_list *list,
-              const movie_renderer *renderer, double begin);
+              shot_renderer *shots, double begin);
 
 /* Accepts NULL. */
 void movie_close(movie *s);

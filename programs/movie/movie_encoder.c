@@ -157,24 +157,17 @@ static int spawn(const command *c, const char *log, int input, pid_t *process) {
 
 /* Both ends are close-on-exec: if the child kept our end open, the pipe would
  * never end. */
-static int open_pipe(int ends[2]) {
+int encoder_start(const encoder_job *job, movie_encoder *out) {
+    command c;
+    int ends[2];
     if (pipe(ends) != 0)
         return errno;
     fcntl(ends[0], F_SETFD, FD_CLOEXEC);
     fcntl(ends[1], F_SETFD, FD_CLOEXEC);
-    return 0;
-}
-
-int encoder_start(const encoder_job *job, movie_encoder *out) {
-    command c;
-    int ends[2];
-    int number = open_pipe(ends);
-    if (number != 0)
-        return number;
     *out = (movie_encoder){.pipe = ends[1]};
     snprintf(out->log, sizeof out->log, "%s", job->log);
     fill_command(job, &c);
-    number = spawn(&c, job->log, ends[0], &out->process);
+    const int number = spawn(&c, job->log, ends[0], &out->process);
     close(ends[0]);
     if (number != 0) {
         out->process = 0;

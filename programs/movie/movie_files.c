@@ -14,7 +14,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static int fail_list(void) {
+int steps_fail_memory(void) {
     return fail_memory("out of memory for the list of time steps; make a movie "
                        "of fewer");
 }
@@ -26,13 +26,13 @@ static int add_path(step_files *files, const char *path) {
         char **paths =
             realloc(files->paths, (size_t)room * sizeof *files->paths);
         if (!paths)
-            return fail_list();
+            return steps_fail_memory();
         files->paths = paths;
         files->room = room;
     }
     char *copy = strdup(path);
     if (!copy)
-        return fail_list();
+        return steps_fail_memory();
     files->paths[files->count++] = copy;
     return CONTINUE;
 }
@@ -90,7 +90,7 @@ static int find_numbers(const char *pattern, frame_names *names, numbers *out) {
     }
     closedir(folder);
     if (!good)
-        return fail_list();
+        return steps_fail_memory();
     if (!out->count) {
         say("%s: no file matches this pattern; correct it", pattern);
         return SNOW_STATUS_BAD_INPUT;

@@ -1,8 +1,8 @@
-/* movie_files.h - the files of time steps. */
+/* movie_files.h - the files of time steps, and what a movie makes of them. */
 #ifndef MOVIE_FILES_H
 #define MOVIE_FILES_H
 
-#include "options/options.h"
+#include "movie/movie.h"
 
 /* The files, in order: each operand is a file, or a pattern of numbered ones
  * (run_%04d.nrrd), both with a data set in them where they have several
@@ -23,5 +23,19 @@ bool files_are_meant(const char *path);
  * CONTINUE or an exit code. */
 int steps_find(const options *opts, step_files *out);
 void steps_free(step_files *files);
+
+/* Makes one shot for each file.  A single file gives one shot for each time
+ * step in it, unless --time selects one; the file is then inspected.  Returns
+ * CONTINUE or an exit code. */
+int steps_list(const step_files *files, shot_renderer *shots, shot_list *out);
+
+/* Makes the transfer function from the values of all steps, if it depends on
+ * values and there are several steps; otherwise the first step decides.  Reads
+ * every step once; each of many ranks reads some of them.  Returns CONTINUE or
+ * an exit code. */
+int steps_look(const shot_list *list, shot_renderer *shots);
+
+/* Says that there is no memory for a list of steps. */
+int steps_fail_memory(void);
 
 #endif

@@ -102,9 +102,9 @@ static int check_frame(snow_context *context, const char *path,
                        const options *opts) {
     snow_image_options form = picture_form(opts);
     form.overwrite = true;
-    snow_status status = snow_image_check(context, path, (int)opts->size[0],
-                                          (int)opts->size[1], &form);
-    return status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
+    return check_status(context,
+                        snow_image_check(context, path, (int)opts->size[0],
+                                         (int)opts->size[1], &form));
 }
 
 /* The library knows which names it can write, and where.  A later check looks
@@ -163,9 +163,7 @@ int64_t place_first(const movie_place *place, int64_t from) {
 
 /* Whether a name is ".unfinished-NAME", or "..unfinished-NAME.snow-abcdef"
  * while the library writes, with the NAME of a frame. */
-static bool is_unfinished(const movie_place *place, const char *file,
-                          int64_t unused) {
-    (void)unused;
+static bool is_unfinished(const movie_place *place, const char *file) {
     char name[NAME_MAX + 1];
     size_t length = strlen(file), mark = strlen(ASIDE);
     size_t tail = strlen(LIBRARY_MARK) + LIBRARY_LETTERS;
@@ -181,16 +179,16 @@ static bool is_unfinished(const movie_place *place, const char *file,
     return names_index(&place->names, name) >= 0;
 }
 
-/* Removes the files of the folder for which `wanted` is true. */
-static void remove_those(const movie_place *place,
-                         bool (*wanted)(const movie_place *, const char *,
-                                        int64_t below),
+/* Removes unfinished files of the folder, or the frames below a number. */
+static void remove_those(const movie_place *place, bool unfinished,
                          int64_t below) {
     char path[PATH_MAX];
     const struct dirent *entry;
     DIR *folder = opendir(names_folder(&place->names));
     while (folder && (entry = readdir(folder))) {
-        if (wanted(place, entry->d_name, below) &&
+        const int64_t index = names_index(&place->names, entry->d_name);
+        if ((unfinished ? is_unfinished(place, entry->d_name)
+                        : index >= 0 && index < below) &&
             join(path, sizeof path, place->names.folder, entry->d_name))
             unlink(path);
     }
@@ -198,18 +196,12 @@ static void remove_those(const movie_place *place,
         closedir(folder);
 }
 
-static bool is_frame(const movie_place *place, const char *file,
-                     int64_t below) {
-    int64_t index = names_index(&place->names, file);
-    return index >= 0 && index < below;
-}
-
 void place_remove_frames(const movie_place *place, int64_t count) {
-    remove_those(place, is_frame, count);
+    remove_those(place, false, count);
 }
 
 void place_sweep(const movie_place *place) {
-    remove_those(place, is_unfinished, 0);
+    remove_those(place, true, 0);
     if (place->format)
         unlink(place->movie);
 }

@@ -30,13 +30,6 @@ static const char *const without_effect[] = {
     "threads", "progress",  "stats",       "verbose", "quiet",
     "memory",  "config",    "save-config", "timeout"};
 
-static bool has_effect(const char *name) {
-    for (size_t i = 0; i < sizeof without_effect / sizeof *without_effect; i++)
-        if (strcmp(name, without_effect[i]) == 0)
-            return false;
-    return true;
-}
-
 /* Line ends in names would split or forge lines. */
 static void print_clean(FILE *out, const char *text) {
     for (; *text; text++)
@@ -59,15 +52,28 @@ static void print_identity(FILE *out, const char *path) {
     print_clean(out, set);
 }
 
-/* An option that names a file (a transfer function, a mask) also records the
- * file's identity. */
-static void print_options(FILE *out, const options *opts) {
+/* What all frames have in common.  AVX2 and AVX-512 give the same bits; other
+ * instruction sets differ.  An option that names a file (a transfer function, a
+ * mask) also records the file's identity. */
+static void print_head(FILE *out, const options *opts, const shot_list *list) {
+    const size_t others = sizeof without_effect / sizeof *without_effect;
+    const char *isa = strcmp(opts->isa, "auto") ? opts->isa : snow_isa_used();
+    fprintf(out, FIRST_LINE "version %s\nkernels %s\n", snow_version(),
+            opts->deterministic           ? "deterministic"
+            : strncmp(isa, "avx", 3) == 0 ? "vector"
+                                          : isa);
+    if (process_ranks() > 1 && !opts->deterministic)
+        fprintf(out, "ranks %d\n", process_ranks());
     if (opts->opacity_unit)
         fprintf(out, "opacity-unit %s\n", opts->opacity_unit);
     for (size_t i = 0; option_table[i].name; i++) {
         const char *text = opts->given[i];
         struct stat what;
-        if (!text || !has_effect(option_table[i].name))
+        size_t n = 0;
+        while (n < others &&
+               strcmp(option_table[i].name, without_effect[n]) != 0)
+            n++;
+        if (!text || n < others)
             continue;
         fprintf(out, "--%s ", option_table[i].name);
         print_clean(out, text);
@@ -77,23 +83,6 @@ static void print_options(FILE *out, const options *opts) {
         }
         fprintf(out, "\n");
     }
-}
-
-/* AVX2 and AVX-512 give the same bits; other instruction sets differ. */
-static const char *kernels(const options *opts) {
-    const char *isa = strcmp(opts->isa, "auto") ? opts->isa : snow_isa_used();
-    if (opts->deterministic)
-        return "deterministic";
-    return strncmp(isa, "avx", 3) == 0 ? "vector" : isa;
-}
-
-/* What all frames have in common. */
-static void print_head(FILE *out, const options *opts, const shot_list *list) {
-    fprintf(out, FIRST_LINE "version %s\nkernels %s\n", snow_version(),
-            kernels(opts));
-    if (process_ranks() > 1 && !opts->deterministic)
-        fprintf(out, "ranks %d\n", process_ranks());
-    print_options(out, opts);
     if (list->looked)
         fprintf(out, LOOK_LINE "%" PRId64 " steps\n", list->looked);
 }
@@ -148,10 +137,6 @@ static bool is_locked_by_others(int file) {
     struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     return fcntl(file, F_SETLK, &lock) != 0 &&
            (errno == EACCES || errno == EAGAIN);
-}
-
-static bool begins(const char *text, const char *word) {
-    return strncmp(text, word, strlen(word)) == 0;
 }
 
 static size_t line_length(const char *text) {
@@ -213,19 +198,6 @@ static void find_lines(const char *text, int64_t count, frame_line *lines,
     out->whole = text - begin;
 }
 
-static void mark_kept(const frame_line *lines, const movie_place *place,
-                      int64_t count, frame_record *out) {
-    char path[PATH_MAX];
-    struct stat what;
-    for (int64_t i = 0; i < count; i++) {
-        out->kept[i] = lines[i].bytes &&
-                       place_frame(place, i, path, sizeof path) &&
-                       stat(path, &what) == 0 && S_ISREG(what.st_mode) &&
-                       what.st_size == lines[i].bytes;
-        out->keeps += out->kept[i];
-    }
-}
-
 static bool is_same_line(const char *a, const char *b) {
     size_t length = line_length(a);
     return length == line_length(b) && strncmp(a, b, length) == 0;
@@ -242,18 +214,6 @@ static int fail_other(const options *opts, const char *old, const char *now) {
                        "--overwrite without --resume to start again",
                        opts->output, was > 300 ? 300 : was, old,
                        is > 300 ? 300 : is, now);
-}
-
-/* Compares what all frames have in common. */
-static int check_head(const options *opts, const char *old, const char *now) {
-    while (*now && is_same_line(old, now)) {
-        old += line_length(old);
-        now += line_length(now);
-    }
-    bool ended = !*old || begins(old, "frame ");
-    return ended && !*now ? CONTINUE
-                          : fail_other(opts, ended ? "nothing" : old,
-                                       *now ? now : "nothing");
 }
 
 /* Compares the frames that are kept, and the steps that their look was chosen
@@ -279,8 +239,25 @@ static int check_frames(const options *opts, const shot_list *list,
 static int check_old(const options *opts, const shot_list *list,
                      const movie_place *place, const char *old,
                      const frame_line *lines, frame_record *out) {
-    mark_kept(lines, place, list->count, out);
-    int done = check_head(opts, old, out->head);
+    const char *now = out->head;
+    char path[PATH_MAX];
+    struct stat what;
+    int done = CONTINUE;
+    for (int64_t i = 0; i < list->count; i++) {
+        out->kept[i] = lines[i].bytes &&
+                       place_frame(place, i, path, sizeof path) &&
+                       stat(path, &what) == 0 && S_ISREG(what.st_mode) &&
+                       what.st_size == lines[i].bytes;
+        out->keeps += out->kept[i];
+    }
+    while (*now && is_same_line(old, now)) {
+        old += line_length(old);
+        now += line_length(now);
+    }
+    const bool ended = !*old || strncmp(old, "frame ", 6) == 0;
+    if (!ended || *now)
+        done =
+            fail_other(opts, ended ? "nothing" : old, *now ? now : "nothing");
     if (done == CONTINUE && out->keeps)
         done = check_frames(opts, list, lines, out);
     if (done == CONTINUE && out->listed > list->count)
@@ -354,28 +331,14 @@ static int open_file(const movie_place *place, frame_record *out) {
     return CONTINUE;
 }
 
-/* The look of frames that are there stays when others are added. */
-static void keep_look(const char *old, shot_list *list) {
-    const char *line = strstr(old, "\n" LOOK_LINE);
-    int64_t looked;
-    if (line && sscanf(line + 1, LOOK_LINE "%" SCNd64 " steps", &looked) == 1 &&
-        looked > 0 && looked < list->looked)
-        list->looked = looked;
-}
-
+/* What the frames are made with now.  Inputs are looked at before any is read:
+ * one that changes meanwhile shows when the run is resumed. */
 static int describe(const options *opts, const shot_list *list,
                     frame_record *out) {
-    free(out->head);
     out->head = text_of(opts, list, -1);
-    return out->head ? CONTINUE : fail_list(list);
-}
-
-/* Inputs are looked at before any is read: one that changes meanwhile shows
- * when the run is resumed. */
-static int list_inputs(const shot_list *list, frame_record *out) {
     out->kept = calloc((size_t)list->count, sizeof *out->kept);
     out->inputs = calloc((size_t)list->count, sizeof *out->inputs);
-    if (!out->kept || !out->inputs)
+    if (!out->head || !out->kept || !out->inputs)
         return fail_list(list);
     out->count = list->count;
     for (int64_t i = 0; i < list->count; i++)
@@ -392,11 +355,13 @@ int record_open(const options *opts, shot_list *list, const movie_place *place,
         return done;
     char *old = out->file >= 0 ? read_text_of(out->file) : NULL;
     const int64_t all = list->looked;
-    if (old && opts->resume)
-        keep_look(old, list);
-    done = list_inputs(list, out);
-    if (done == CONTINUE)
-        done = describe(opts, list, out);
+    /* The look of frames that are there stays when others are added. */
+    const char *line = old && opts->resume ? strstr(old, "\n" LOOK_LINE) : NULL;
+    int64_t looked;
+    if (line && sscanf(line + 1, LOOK_LINE "%" SCNd64 " steps", &looked) == 1 &&
+        looked > 0 && looked < list->looked)
+        list->looked = looked;
+    done = describe(opts, list, out);
     if (done != CONTINUE) {
         free(old);
         return done;
@@ -410,7 +375,9 @@ int record_open(const options *opts, shot_list *list, const movie_place *place,
     if (done != CONTINUE || out->keeps || list->looked == all)
         return done;
     list->looked = all; /* no frame is there that has the look */
-    return describe(opts, list, out);
+    free(out->head);
+    out->head = text_of(opts, list, -1);
+    return out->head ? CONTINUE : fail_list(list);
 }
 
 static int write_all(int file, const char *text, size_t size) {
@@ -450,20 +417,6 @@ static int write_line(const frame_record *record, const shot_list *list,
                : ENAMETOOLONG;
 }
 
-/* Old frames are removed before the record that lists them, so that an
- * interruption in between leaves no unlisted frames.  Frames that must not be
- * replaced did not exist when the run began; another program made them. */
-static int start_anew(frame_record *record, const movie_place *place,
-                      int64_t count) {
-    if (record->replaces)
-        place_remove_frames(place,
-                            record->listed > count ? record->listed : count);
-    int number = ftruncate(record->file, 0) == 0 ? 0 : errno;
-    return number == 0
-               ? write_all(record->file, record->head, strlen(record->head))
-               : number;
-}
-
 /* The steps of the look, and frames that are kept. */
 static int write_known(frame_record *record, const movie_place *place,
                        const shot_list *list) {
@@ -483,13 +436,20 @@ static int write_known(frame_record *record, const movie_place *place,
     return number;
 }
 
+/* Old frames are removed before the record that lists them, so that an
+ * interruption in between leaves no unlisted frames.  Frames that must not be
+ * replaced did not exist when the run began; another program made them. */
 int record_add(frame_record *record, const movie_place *place,
                const shot_list *list, int64_t index, int64_t bytes) {
+    const int64_t whole = record->anew ? 0 : record->whole;
     int number = 0;
-    if (record->anew)
-        number = start_anew(record, place, list->count);
-    else if (record->whole && ftruncate(record->file, record->whole) != 0)
+    if (record->anew && record->replaces)
+        place_remove_frames(place, record->listed > list->count ? record->listed
+                                                                : list->count);
+    if ((record->anew || whole) && ftruncate(record->file, whole) != 0)
         number = errno;
+    if (number == 0 && record->anew)
+        number = write_all(record->file, record->head, strlen(record->head));
     record->whole = 0;
     if (number == 0 && (record->anew || record->renewed))
         number = write_known(record, place, list);

@@ -68,10 +68,9 @@ int shots_volume(shot_renderer *shots, const movie_shot *shot) {
                : done;
 }
 
-static void annotations(void *self, picture_annotations *out) {
-    const shot_renderer *shots = self;
+picture_annotations shots_annotations(const shot_renderer *shots) {
     const render_state *s = &shots->state;
-    *out = (picture_annotations){
+    return (picture_annotations){
         s->opts,
         s->drawn.whole,
         s->view,
@@ -87,11 +86,10 @@ static void report_legend(shot_renderer *shots, const snow_image *image) {
     const options *opts = shots->state.opts;
     snow_context *context = NULL;
     snow_overlay *overlay = NULL;
-    picture_annotations made;
     const bool any = opts->legend.scale || opts->title || opts->annotate.text;
     if (!any || !image || open_context(opts, &context) != CONTINUE)
         return;
-    annotations(shots, &made);
+    const picture_annotations made = shots_annotations(shots);
     (void)annotations_make(&made, 0, shots->state.steps ? 0 : -1, image,
                            context, &overlay);
     snow_overlay_free(overlay);
@@ -116,15 +114,13 @@ static void report_choices(shot_renderer *shots, snow_image *image) {
     render_state_note(&shots->state, shots->painted.range);
 }
 
-static int begin(void *self, const movie_shot *shot) {
-    shot_renderer *shots = self;
+int shots_begin(shot_renderer *shots, const movie_shot *shot) {
     int done = shots_volume(shots, shot);
     return done == CONTINUE ? render_state_begin(&shots->state, shot->azimuth)
                             : done;
 }
 
-static int finish_shot(void *self, snow_image **image) {
-    shot_renderer *shots = self;
+int shots_finish(shot_renderer *shots, snow_image **image) {
     int done = render_state_finish(&shots->state, image);
     if (done == CONTINUE)
         done =
@@ -136,39 +132,4 @@ static int finish_shot(void *self, snow_image **image) {
         report_choices(shots, *image);
     shots->drawn = true;
     return CONTINUE;
-}
-
-static const snow_image *depth(void *self) {
-    const shot_renderer *shots = self;
-    return shots->state.opts->depth ? snow_frame_depth(shots->state.frame)
-                                    : NULL;
-}
-
-static void report_picture(void *self, render_report *out) {
-    const shot_renderer *shots = self;
-    *out = render_state_report(&shots->state);
-}
-
-static double time_of(void *self) {
-    const shot_renderer *shots = self;
-    return shots->state.drawn.whole.time_value;
-}
-
-static int share_word(void *self, int word) {
-    (void)self;
-    return process_share(word);
-}
-
-movie_renderer shots_renderer(shot_renderer *shots) {
-    return (movie_renderer){.self = shots,
-                            .begin = begin,
-                            .finish = finish_shot,
-                            .ahead = process_ranks() > 1,
-                            .depth = depth,
-                            .report = report_picture,
-                            .annotations = annotations,
-                            .time = time_of,
-                            .share = share_word,
-                            .writes = process_talks(),
-                            .ranks = process_ranks()};
 }

@@ -7,7 +7,7 @@
 #include "picture/paint.h"
 #include "picture/render_state.h"
 
-typedef struct shot_renderer {
+struct shot_renderer {
     render_state state;
     int64_t count;         /* number of frames, for messages */
     int64_t time;          /* time step of the present volume */
@@ -16,7 +16,7 @@ typedef struct shot_renderer {
                        * of many, and no step was selected */
     bool drawn;       /* a picture has been made, and choices printed */
     paint_given painted; /* how a picture of values was painted */
-} shot_renderer;
+};
 
 /* Returns CONTINUE or an exit code. */
 int shots_open(const options *opts, shot_renderer *out);
@@ -31,7 +31,15 @@ int shots_check(shot_renderer *shots, const char *path,
  * code. */
 int shots_volume(shot_renderer *shots, const movie_shot *shot);
 
-/* The functions for movie_run; valid as long as the renderer. */
-movie_renderer shots_renderer(shot_renderer *shots);
+/* Begin to render a shot, and finish the one begun first: of many ranks two
+ * are in flight.  All ranks call them in the same order with the same shots,
+ * and all get the same result: CONTINUE, or an exit code after the error was
+ * printed.  *image belongs to the caller, and is NULL on ranks that do not
+ * write. */
+int shots_begin(shot_renderer *shots, const movie_shot *shot);
+int shots_finish(shot_renderer *shots, snow_image **image);
+
+/* The annotations of the pictures, known after the first one. */
+picture_annotations shots_annotations(const shot_renderer *shots);
 
 #endif

@@ -116,13 +116,6 @@ static double median(const double *values, int64_t count) {
     return middle;
 }
 
-static json_t *list_json(const double *values, int64_t count) {
-    json_t *list = json_array();
-    for (int64_t i = 0; i < count; i++)
-        json_array_append_new(list, json_number(values[i]));
-    return list;
-}
-
 /* Stages are summed over the frames, so that they add up to the total; `frame`
  * is the median of one frame. */
 static void set_seconds(json_t *seconds, const movie_figures *figures,
@@ -143,8 +136,9 @@ static void set_seconds(json_t *seconds, const movie_figures *figures,
                 {"total", times->total}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         json_object_set_new(seconds, rows[i].key, json_number(rows[i].seconds));
-    json_object_set_new(seconds, "frames",
-                        list_json(figures->seconds, figures->rendered));
+    json_object_set_new(
+        seconds, "frames",
+        json_vector(figures->seconds, (size_t)figures->rendered));
 }
 
 json_t *movie_stats_json(const movie_figures *figures,

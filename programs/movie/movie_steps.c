@@ -1,8 +1,9 @@
 /* movie_steps.c - lists the volumes that a movie shows, in order, and makes one
  * transfer function for all. */
 #define _XOPEN_SOURCE 700
-#include "movie/movie_steps.h"
 #include "commands/commands.h"
+#include "movie/movie_files.h"
+#include "movie/movie_render.h"
 #include "run/log.h"
 #include "run/memory.h"
 #include "run/paths.h"
@@ -15,11 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int fail_list(void) {
-    return fail_memory("out of memory for the list of time steps; make a movie "
-                       "of fewer");
-}
-
 /* Whether the transfer function depends on the options alone: a preset with
  * values of its own, or one that is spread over given values. */
 static bool look_is_fixed(const options *opts) {
@@ -30,10 +26,6 @@ static bool look_is_fixed(const options *opts) {
     snow_range range = options_range(opts).kind;
     return range == SNOW_RANGE_VALUES ||
            (strncmp(name, "ct-", 3) == 0 && range == SNOW_RANGE_AUTO);
-}
-
-static bool names_labels(const char *preset) {
-    return snow_preset_from_name(preset) == snow_preset_from_name("labels");
 }
 
 /* The options of a step, and of one of the channels that are drawn. */
@@ -50,10 +42,9 @@ static int inspect(const shot_renderer *shots, const movie_shot *shot,
                    int channel, snow_volume_info *out) {
     options step = options_of(&shots->state, shot, channel);
     snow_volume_options data = data_options(&step);
-    snow_status status =
-        snow_volume_inspect(shots->state.context, shot->path, &data, out);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(shots->state.context, status);
+    return check_status(
+        shots->state.context,
+        snow_volume_inspect(shots->state.context, shot->path, &data, out));
 }
 
 /* The last number in a file's name before its suffix: 10 for run_0010.nrrd;
@@ -114,7 +105,7 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     out->looked = look_is_fixed(opts) ? 0 : out->count;
     out->shots = calloc((size_t)out->count, sizeof *out->shots);
     if (!out->shots)
-        return fail_list();
+        return steps_fail_memory();
     for (int64_t i = 0; i < out->count; i++) {
         movie_shot *shot = &out->shots[i];
         *shot = first;
@@ -161,23 +152,22 @@ typedef struct value_pool {
     int64_t label_count;
 } value_pool;
 
-static int64_t common_factor(int64_t a, int64_t b) {
-    while (b) {
-        int64_t rest = a % b;
-        a = b;
-        b = rest;
-    }
-    return a;
-}
-
 /* The distance between sampled values.  It has no common factor with rows and
  * slices, so that the sample does not follow one column of them. */
 static int64_t stride_of(const snow_volume_info *info, int64_t quota) {
     int64_t slice = info->dims[0] * info->dims[1];
     int64_t stride = (slice * info->dims[2] + quota - 1) / quota;
-    while (stride > 1 && common_factor(stride, slice) != 1)
-        stride++;
-    return stride < 1 ? 1 : stride;
+    for (; stride > 1; stride++) {
+        int64_t a = stride, b = slice;
+        while (b) {
+            const int64_t rest = a % b;
+            a = b;
+            b = rest;
+        }
+        if (a == 1)
+            return stride;
+    }
+    return 1;
 }
 
 /* Reads a stored value as a double. */
@@ -244,11 +234,9 @@ static int look_at_pool(render_state *s, const snow_volume_info *step,
         status =
             channels_look(NULL, s->opts, step, &s->channels.list.picks[n],
                           volume, n ? &s->channels.looks[n] : &s->transfer);
-    int done =
-        s->channels.list.count
-            ? (status == SNOW_STATUS_OK ? CONTINUE
-                                        : fail_status(s->context, status))
-            : open_look(s->context, s->opts, volume, &s->transfer);
+    int done = s->channels.list.count
+                   ? check_status(s->context, status)
+                   : open_look(s->context, s->opts, volume, &s->transfer);
     snow_volume_close(volume);
     return done;
 }
@@ -264,7 +252,7 @@ static int look_at_labels(render_state *s, const value_pool *pool) {
     size_t used = 0;
     int named = 0;
     if (!text)
-        return fail_list();
+        return steps_fail_memory();
 #define PUT(...) \
     used += (size_t)snprintf(text + used, capacity - used, __VA_ARGS__)
     PUT("NRRD0004\ntype: int64\ndimension: 3\nsizes: %" PRId64
@@ -296,21 +284,6 @@ static int look_at_labels(render_state *s, const value_pool *pool) {
     return done;
 }
 
-static void report_step(const options *opts, int64_t step, int64_t count) {
-    char line[96];
-    snprintf(line, sizeof line,
-             "reading values of step %" PRId64 " of %" PRId64, step + 1, count);
-    if (progress_is_live())
-        progress(opts, line);
-}
-
-/* The slices of a member: from slab[0] up to, not including, slab[1]. */
-static void share_of(int64_t slices, int group, int member, int64_t slab[2]) {
-    slab[0] = slices / group * member + slices % group * member / group;
-    member++;
-    slab[1] = slices / group * member + slices % group * member / group;
-}
-
 /* Reads a share of a step, which may be the whole step. */
 static int read_share(shot_renderer *shots, const movie_shot *shot, int member,
                       value_pool *pool) {
@@ -325,7 +298,10 @@ static int read_share(shot_renderer *shots, const movie_shot *shot, int member,
         done = shots_check(shots, shot->path, &whole);
     if (done != CONTINUE)
         return done;
-    share_of(whole.dims[2], pool->group, member, slab);
+    const int64_t most = whole.dims[2];
+    for (int end = 0; end < 2; end++)
+        slab[end] = most / pool->group * (member + end) +
+                    most % pool->group * (member + end) / pool->group;
     pool->given = (step_values){0, {NAN, NAN}};
     if (slab[0] == slab[1])
         return CONTINUE;
@@ -374,9 +350,7 @@ static int append_share(value_pool *pool, int rank, double ends[2]) {
     pool->count += given.count;
     ends[0] = fmin(ends[0], given.ends[0]); /* NaN if there are none */
     ends[1] = fmax(ends[1], given.ends[1]);
-    return status == SNOW_STATUS_OK
-               ? CONTINUE
-               : fail_status(snow_comm_context(comm), status);
+    return check_status(snow_comm_context(comm), status);
 }
 
 #define SLAB ((uint64_t)1 << 20)
@@ -498,7 +472,12 @@ static int pool_steps(const shot_list *list, shot_renderer *shots,
         pool->group = choose_group(shots->state.opts, &first, list->count);
     int groups = done == CONTINUE ? process_ranks() / pool->group : 1;
     for (int64_t i = 0; i < list->count && done == CONTINUE; i += groups) {
-        report_step(shots->state.opts, i, list->count);
+        char line[96];
+        snprintf(line, sizeof line,
+                 "reading values of step %" PRId64 " of %" PRId64, i + 1,
+                 list->count);
+        if (progress_is_live())
+            progress(shots->state.opts, line);
         done = pool_round(list, i, shots, pool);
     }
     show_warnings(shots->state.opts, shots->state.context, true);
@@ -509,33 +488,23 @@ static int pool_steps(const shot_list *list, shot_renderer *shots,
                                 : look_at_pool(&shots->state, &first, pool));
 }
 
-/* The channels that are drawn, by the first step. */
-static int choose_channels(const shot_list *list, shot_renderer *shots) {
-    render_state *s = &shots->state;
-    snow_volume_info info = {.size = sizeof info};
-    int done = inspect(shots, &list->shots[0], 0, &info);
-    if (done == CONTINUE)
-        done = channels_choose(s->opts, &info, channels_hinder(s->opts),
-                               &s->channels);
-    return process_agree(done);
-}
-
 static int look_at_steps(const shot_list *list, shot_renderer *shots,
                          int channel) {
     const options *opts = shots->state.opts;
+    const bool labels = opts->preset && snow_preset_from_name(opts->preset) ==
+                                            snow_preset_from_name("labels");
     value_pool pool = {.quota = POOL_VALUES / list->count,
                        .channel = channel,
-                       .labelled = shots->state.channels.list.count ? false
-                                   : opts->preset ? names_labels(opts->preset)
-                                                  : !opts->tf};
+                       .labelled = !shots->state.channels.list.count &&
+                                   (opts->preset ? labels : !opts->tf)};
     if (pool.quota < STEP_VALUES)
         pool.quota = STEP_VALUES;
     int64_t capacity = pool.quota + 2;
     pool.values =
         malloc((size_t)(capacity * (list->count + 1)) * sizeof *pool.values);
     pool.labels = malloc(2 * LABELS_MOST * sizeof *pool.labels);
-    int done =
-        process_agree(pool.values && pool.labels ? CONTINUE : fail_list());
+    int done = process_agree(pool.values && pool.labels ? CONTINUE
+                                                        : steps_fail_memory());
     if (done == CONTINUE) {
         pool.step = pool.values + capacity * list->count;
         done = pool_steps(list, shots, &pool);
@@ -578,7 +547,12 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
      * printed now, except if ranks read steps that rank 0 does not see now. */
     const bool later = process_ranks() > 1;
     show_warnings(s->opts, s->context, !later);
-    int done = choose_channels(&looked, shots), n = 0;
+    snow_volume_info info = {.size = sizeof info};
+    int done = inspect(shots, &list->shots[0], 0, &info), n = 0;
+    if (done == CONTINUE) /* the channels that are drawn */
+        done = channels_choose(s->opts, &info, channels_hinder(s->opts),
+                               &s->channels);
+    done = process_agree(done);
     do
         if (done == CONTINUE)
             done = look_at_steps(&looked, shots, n);

@@ -24,11 +24,6 @@ static void put_number(unsigned char *out, int bytes, uint64_t value) {
         out[i] = (unsigned char)(value >> 8 * i & 255);
 }
 
-static uint32_t get_32(const unsigned char *bytes) {
-    return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 |
-           (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
-}
-
 static bool write_all(FILE *out, const void *bytes, size_t size) {
     return fwrite(bytes, 1, size, out) == size;
 }
@@ -73,16 +68,9 @@ static unsigned char *read_file(const char *path, size_t *size) {
 static size_t skip_header(const unsigned char *bytes, size_t size) {
     size_t at = 12;
     if (size >= at + 18 && memcmp(bytes + at, "VP8X", 4) == 0)
-        at += 8 + get_32(bytes + at + 4);
+        at += 8 + ((uint32_t)bytes[16] | (uint32_t)bytes[17] << 8 |
+                   (uint32_t)bytes[18] << 16 | (uint32_t)bytes[19] << 24);
     return at < size ? at : size;
-}
-
-/* Durations are whole milliseconds and add up to the frame rate. */
-static uint64_t duration(const webp_job *job, int64_t index) {
-    double from = (double)index * 1000 / job->rate;
-    double to = (double)(index + 1) * 1000 / job->rate;
-    double length = (double)((int64_t)(to + 0.5) - (int64_t)(from + 0.5));
-    return length < 1 ? 1 : length > 0xFFFFFF ? 0xFFFFFF : (uint64_t)length;
 }
 
 static bool write_frame(FILE *out, const webp_job *job, int64_t index,
@@ -93,7 +81,14 @@ static bool write_frame(FILE *out, const webp_job *job, int64_t index,
     put_number(head + 4, 4, FRAME_BYTES + rest);
     put_number(head + 14, 3, (uint64_t)job->width - 1);
     put_number(head + 17, 3, (uint64_t)job->height - 1);
-    put_number(head + 20, 3, duration(job, index));
+    /* Durations are whole milliseconds and add up to the frame rate. */
+    double from = (double)index * 1000 / job->rate;
+    double to = (double)(index + 1) * 1000 / job->rate;
+    double length = (double)((int64_t)(to + 0.5) - (int64_t)(from + 0.5));
+    put_number(head + 20, 3,
+               length < 1          ? 1
+               : length > 0xFFFFFF ? 0xFFFFFF
+                                   : (uint64_t)length);
     head[23] = 0x02; /* replaces the previous frame */
     return write_all(out, head, sizeof head) && write_all(out, file + at, rest);
 }

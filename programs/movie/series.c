@@ -26,11 +26,6 @@ typedef struct step_times {
     char unit[64];
 } step_times;
 
-static int fail_times(void) {
-    return fail_usage("--time: the input has no physical times; give the "
-                      "number of a step, from 0");
-}
-
 /* Reads the time of a step from its header. */
 static int time_of(step_times *times, int64_t step, double *out) {
     snow_volume_options data = data_options(times->opts);
@@ -44,7 +39,9 @@ static int time_of(step_times *times, int64_t step, double *out) {
         return fail_status(times->context, status);
     *out = info.time_value;
     memcpy(times->unit, info.time_unit, sizeof times->unit);
-    return isnan(*out) ? fail_times() : CONTINUE;
+    return isnan(*out) ? fail_usage("--time: the input has no physical times; "
+                                    "give the number of a step, from 0")
+                       : CONTINUE;
 }
 
 /* Seconds of a unit, whose first word counts: "hours since 2000-01-01"; 0: it
@@ -246,8 +243,8 @@ int series_take(options *opts, const verb_row *verb) {
     snow_context *context = NULL;
     if (!(verb->bit & reads) || opts->operand_count == 0)
         return CONTINUE;
-    const bool movie = verb->bit == VERB_MOVIE, timed = !isnan(opts->moment);
-    if (opts->time_range && !movie)
+    const bool is_movie = verb->bit == VERB_MOVIE, timed = !isnan(opts->moment);
+    if (opts->time_range && !is_movie)
         return fail_usage("--time: %s shows one step, and a range of them is "
                           "for movie; give one number",
                           verb->name);
@@ -256,7 +253,7 @@ int series_take(options *opts, const verb_row *verb) {
                                   "give the number of a step")
                      : CONTINUE;
     int done = join_set(opts);
-    const bool files = !movie && files_are_meant(opts->operands[0]);
+    const bool files = !is_movie && files_are_meant(opts->operands[0]);
     if (done != CONTINUE || (!files && !timed))
         return done;
     snow_status status = snow_context_new(NULL, &context);

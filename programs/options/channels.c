@@ -1,6 +1,7 @@
 /* channels.c - see channels.h.  The form of a word behind a channel says what
  * it is: a range has "..", an opacity is a number, a colour is neither. */
 #include "options/channels.h"
+#include "options/config.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -134,15 +135,6 @@ bool channels_find(channel_list *list, const snow_volume_info *info,
     return true;
 }
 
-/* As few digits as are read back as the same number. */
-static void spell(double value, char out[32]) {
-    for (int digits = 6; digits <= 17; digits++) {
-        snprintf(out, 32, "%.*g", digits, value);
-        if (!(strtod(out, NULL) < value) && !(strtod(out, NULL) > value))
-            return;
-    }
-}
-
 void channels_text(const channel_list *list, char *out, size_t size) {
     size_t used = 0;
     *out = 0;
@@ -150,13 +142,13 @@ void channels_text(const channel_list *list, char *out, size_t size) {
         const channel_pick *pick = &list->picks[n];
         const range_value *r = &pick->range;
         const char *p = r->kind == SNOW_RANGE_PERCENTILES ? "p" : "";
-        char low[32], high[32], range[80] = "", opacity[40] = "";
-        spell(r->low, low);
-        spell(r->high, high);
+        char low[40], high[40], range[96] = "", opacity[48] = "";
+        config_real(r->low, low);
+        config_real(r->high, high);
         if (r->kind == SNOW_RANGE_VALUES || r->kind == SNOW_RANGE_PERCENTILES)
             snprintf(range, sizeof range, ":%s%s..%s%s", p, low, p, high);
         if (pick->opacity < 1) {
-            spell(pick->opacity, low);
+            config_real(pick->opacity, low);
             snprintf(opacity, sizeof opacity, ":%s", low);
         }
         used += (size_t)snprintf(out + used, size - used, "%s%lld%s%s%s%s",

@@ -100,12 +100,6 @@ static bool gives_way(const options *out, const char *key) {
     return strcmp(key, "window") == 0 && options_given(out, "range");
 }
 
-static int fail_inputs(size_t count) {
-    return fail_memory("out of memory for the names of %zu inputs; close other "
-                       "programs",
-                       count);
-}
-
 /* The inputs of a movie, unless some stand on the command line.  They stay
  * until the process ends, as argv does. */
 static int take_inputs(options *out, const json_t *list) {
@@ -114,13 +108,15 @@ static int take_inputs(options *out, const json_t *list) {
     if (out->operand_count > 0 || inputs || count == 0)
         return CONTINUE;
     inputs = calloc(count, sizeof *inputs);
-    for (size_t i = 0; inputs && i < count; i++) {
+    bool good = inputs != NULL;
+    for (size_t i = 0; good && i < count; i++) {
         inputs[i] = strdup(json_string_value(json_array_get(list, i)));
-        if (!inputs[i])
-            return fail_inputs(count);
+        good = inputs[i] != NULL;
     }
-    if (!inputs)
-        return fail_inputs(count);
+    if (!good)
+        return fail_memory("out of memory for the names of %zu inputs; close "
+                           "other programs",
+                           count);
     out->operands = inputs;
     out->operand_count = (int)count;
     return CONTINUE;

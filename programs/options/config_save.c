@@ -117,8 +117,7 @@ static int check_place(const options *opts) {
     static const char *const names[] = {"output", "depth", "stats"};
     const char *const paths[] = {opts->output, opts->depth, opts->stats};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
-        if (paths[i] && (strcmp(opts->save_config, paths[i]) == 0 ||
-                         same_place(opts->save_config, paths[i])))
+        if (same_output(opts->save_config, paths[i]))
             return fail_usage(
                 "--save-config: is the same file as --%s; name two files",
                 names[i]);
@@ -233,22 +232,20 @@ static void add_option(FILE *out, const char *key, const json_t *value) {
         add_word(out, text ? text : "");
 }
 
-/* A file whose name begins with a dash is no option. */
-static void add_input(FILE *out, const char *path) {
-    char text[PATH_MAX + 4];
-    bool dashed = *path == '-' && path[1];
-    snprintf(text, sizeof text, "%s%s", dashed ? "./" : "", path);
-    add_word(out, text);
-}
-
 /* All options that differ from their defaults. */
 static void write_command(FILE *out, const options *opts, const verb_row *verb,
                           const json_t *tree, json_t *usual) {
     const char *key;
     json_t *value;
     fprintf(out, "snowglass %s", verb->name);
-    for (int i = 0; i < opts->operand_count; i++)
-        add_input(out, opts->operands[i]);
+    for (int i = 0; i < opts->operand_count; i++) {
+        /* A file whose name begins with a dash is no option. */
+        char text[PATH_MAX + 4];
+        bool dashed = *opts->operands[i] == '-' && opts->operands[i][1];
+        snprintf(text, sizeof text, "%s%s", dashed ? "./" : "",
+                 opts->operands[i]);
+        add_word(out, text);
+    }
     json_object_foreach((json_t *)tree, key, value) {
         bool always = strcmp(key, "input") == 0 || strcmp(key, "verb") == 0 ||
                       strcmp(key, "version") == 0;
@@ -281,15 +278,6 @@ char *config_command(const options *opts, const verb_row *verb,
     return text;
 }
 
-/* Prints the command that makes the same picture, with what was chosen. */
-static void print_command(const options *opts, const verb_row *verb,
-                          const json_t *tree) {
-    char *text = config_command(opts, verb, tree);
-    if (text)
-        say("again: %s", text);
-    free(text);
-}
-
 int config_save(const options *opts, const verb_row *verb) {
     bool rendered =
         (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE | VERB_SLICE));
@@ -301,8 +289,12 @@ int config_save(const options *opts, const verb_row *verb) {
         return fail_memory(
             "%s: out of memory for its text; close other programs",
             opts->save_config ? opts->save_config : "the command");
-    if (prints)
-        print_command(opts, verb, tree);
+    if (prints) {
+        char *text = config_command(opts, verb, tree);
+        if (text)
+            say("again: %s", text);
+        free(text);
+    }
     if (!opts->save_config) {
         json_decref(tree);
         return SNOW_STATUS_OK;

@@ -8,12 +8,6 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Whether a word can be meant as a verb: it is no path of a file. */
-static bool is_plain(const char *word) {
-    return !strpbrk(word, "./:\\%#") && strcmp(word, "-") != 0 &&
-           access(word, F_OK) != 0;
-}
-
 /* Refuses the first of several words where no verb was written: it is not a
  * verb. */
 static int refuse_verb(const char *word) {
@@ -37,7 +31,9 @@ static int refuse_verb(const char *word) {
  * the verb was written. */
 static int refuse_words(const options *out, const verb_row *verb, bool named) {
     const char *first = out->operands[0];
-    bool plain = verb->bit == VERB_RENDER && is_plain(first);
+    /* it is no path of a file */
+    const bool plain = verb->bit == VERB_RENDER && !strpbrk(first, "./:\\%#") &&
+                       strcmp(first, "-") != 0 && access(first, F_OK) != 0;
     const verb_row *other = plain ? verb_named(first) : NULL;
     if (other)
         return fail_usage("%s: the verb must come first; give snowglass %s %s",

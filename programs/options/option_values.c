@@ -98,6 +98,16 @@ static const char *next_part(const char *text, char separator,
     return end ? end + 1 : text + length;
 }
 
+/* Splits a text into so many parts. */
+static bool split(const char *text, char separator, int count,
+                  char (*parts)[NUMBER_BYTES]) {
+    bool more = true;
+    for (int i = 0; i < count; i++)
+        if (!more || !(text = next_part(text, separator, parts[i], &more)))
+            return false;
+    return !more;
+}
+
 /* "1/0" is refused, although C would compute it. */
 bool value_quotient(const char *text, double *out) {
     const char *slash = strchr(text, '/');
@@ -111,33 +121,25 @@ bool value_quotient(const char *text, double *out) {
 }
 
 bool value_reals(const char *text, char separator, int count, double *out) {
-    char part[NUMBER_BYTES];
+    char parts[VALUES_MOST][NUMBER_BYTES];
     double values[VALUES_MOST];
-    bool more = true;
-    for (int i = 0; i < count; i++) {
-        if (!more || !(text = next_part(text, separator, part, &more)) ||
-            !value_real(part, &values[i]))
-            return false;
-    }
-    if (more)
-        return false;
-    memcpy(out, values, (size_t)count * sizeof *out);
-    return true;
+    bool good = split(text, separator, count, parts);
+    for (int i = 0; i < count && good; i++)
+        good = value_real(parts[i], &values[i]);
+    if (good)
+        memcpy(out, values, (size_t)count * sizeof *out);
+    return good;
 }
 
 bool value_integers(const char *text, char separator, int count, int64_t *out) {
-    char part[NUMBER_BYTES];
+    char parts[3][NUMBER_BYTES];
     int64_t values[3];
-    bool more = true;
-    for (int i = 0; i < count; i++) {
-        if (!more || !(text = next_part(text, separator, part, &more)) ||
-            !value_integer(part, &values[i]))
-            return false;
-    }
-    if (more)
-        return false;
-    memcpy(out, values, (size_t)count * sizeof *out);
-    return true;
+    bool good = split(text, separator, count, parts);
+    for (int i = 0; i < count && good; i++)
+        good = value_integer(parts[i], &values[i]);
+    if (good)
+        memcpy(out, values, (size_t)count * sizeof *out);
+    return good;
 }
 
 /* "16:48", "16:", ":48", ":"; an explicit end of 0 is not a box. */
@@ -245,15 +247,14 @@ void value_color_names(char *out, size_t size) {
 /* Both ends need the p: "p1,99" could mean a percentile and a value, so it is
  * refused. */
 static bool percentiles(const char *text, range_value *out) {
-    char part[NUMBER_BYTES];
+    char parts[2][NUMBER_BYTES];
     double values[2];
-    bool more = true;
-    for (int i = 0; i < 2; i++) {
-        if (!more || !(text = next_part(text, ',', part, &more)) ||
-            part[0] != 'p' || !value_real(part + 1, &values[i]))
+    if (!split(text, ',', 2, parts))
+        return false;
+    for (int i = 0; i < 2; i++)
+        if (parts[i][0] != 'p' || !value_real(parts[i] + 1, &values[i]))
             return false;
-    }
-    if (more || values[0] < 0 || values[1] > 100 || values[0] >= values[1])
+    if (values[0] < 0 || values[1] > 100 || values[0] >= values[1])
         return false;
     *out = (range_value){SNOW_RANGE_PERCENTILES, values[0], values[1]};
     return true;

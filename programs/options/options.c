@@ -142,15 +142,6 @@ static bool guess_option(const char *name, unsigned verb, char *out,
     return guess_write(&near, "--", out, size);
 }
 
-/* getopt reports unknown and ambiguous abbreviations in the same way, but they
- * need different advice. */
-static bool is_ambiguous(const char *name, size_t length) {
-    int hits = 0;
-    for (const option_row *row = option_table; row->name; row++)
-        hits += strncmp(row->name, name, length) == 0;
-    return hits > 1;
-}
-
 /* Reports a word that getopt does not know: `word` as written; `code` is the
  * row of an option that was given an argument but takes none. */
 static int refuse_unknown(const verb_row *verb, const char *word, int code) {
@@ -164,7 +155,12 @@ static int refuse_unknown(const verb_row *verb, const char *word, int code) {
     snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
     if (renamed_option(name))
         return fail_usage("--%s: is now %s", name, renamed_option(name));
-    if (is_ambiguous(name, strlen(name)))
+    /* getopt reports unknown and ambiguous abbreviations in the same way, but
+     * they need different advice. */
+    int hits = 0;
+    for (const option_row *row = option_table; row->name; row++)
+        hits += strncmp(row->name, name, strlen(name)) == 0;
+    if (hits > 1)
         return fail_usage("--%s: matches several options; write the full name, "
                           "see snowglass help %s",
                           name, verb->name);
@@ -266,14 +262,6 @@ static const char *take_number(const option_row *row, int argc, char **argv) {
     return argv[optind++];
 }
 
-/* --help ends the parsing; the next word is its topic. */
-static int take_help(options *out, int argc, char **argv, const char *text) {
-    bool follows = !text && optind < argc && argv[optind][0] != '-';
-    out->help = true;
-    out->help_word = follows ? argv[optind] : text;
-    return CONTINUE;
-}
-
 /* The long option just read as it was written, NULL for a letter.  If its value
  * is a word of its own, it stands one word before that. */
 static const char *long_word(char **argv) {
@@ -281,12 +269,6 @@ static const char *long_word(char **argv) {
     if (optarg && optarg == word)
         word = argv[optind - 2];
     return strncmp(word, "--", 2) == 0 ? word + 2 : NULL;
-}
-
-/* getopt_long accepts abbreviations: --azim would be --azimuth, until another
- * option begins so. */
-static bool in_full(const char *word, const option_row *row) {
-    return !word || strcspn(word, "=") == strlen(row->name);
 }
 
 int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
@@ -301,17 +283,24 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
             return refuse_unknown(verb, argv[optind - 1], optopt);
         const option_row *row = row_of(code == ':' ? optopt : code);
         const char *word = long_word(argv);
-        if (!in_full(word, row) && renamed_option(word))
+        /* getopt_long accepts abbreviations: --azim would be --azimuth, until
+         * another option begins so. */
+        const bool whole = !word || strcspn(word, "=") == strlen(row->name);
+        if (!whole && renamed_option(word))
             return fail_usage("--%.*s: is now %s", (int)strcspn(word, "="),
                               word, renamed_option(word));
-        if (!in_full(word, row))
+        if (!whole)
             return fail_usage("--%s: unknown option; did you mean --%s?", word,
                               row->name);
         if (code == ':')
             return fail_usage("--%s: needs a value; give --%s %s", row->name,
                               row->name, row->argument);
-        if (strcmp(row->name, "help") == 0)
-            return take_help(out, argc, argv, optarg);
+        if (strcmp(row->name, "help") == 0) {
+            bool follows = !optarg && optind < argc && argv[optind][0] != '-';
+            out->help = true;
+            out->help_word = follows ? argv[optind] : optarg;
+            return CONTINUE;
+        }
         const char *text = optarg;
         if (takes_number(row) && text && !*text)
             return fail_usage(

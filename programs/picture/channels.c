@@ -32,12 +32,6 @@ const char *channels_hinder(const options *opts) {
     return NULL;
 }
 
-/* A look that was asked for is of one volume. */
-static bool asks_one(const options *opts) {
-    return opts->preset || opts->tf || opts->colormap || opts->component ||
-           opts->labels || options_given(opts, "channel");
-}
-
 void channels_note(const options *opts, const snow_volume_info *info,
                    const char *why) {
     if (opts->verbosity >= 0 && process_talks())
@@ -54,7 +48,11 @@ int channels_choose(const options *opts, const snow_volume_info *info,
     char scratch[128];
     if (out->chosen)
         return CONTINUE;
-    if (!asked->count && !asks_one(opts))
+    /* A look that was asked for is of one volume. */
+    const bool one = opts->preset || opts->tf || opts->colormap ||
+                     opts->component || opts->labels ||
+                     options_given(opts, "channel");
+    if (!asked->count && !one)
         channels_of_file(info, &list);
     if (!why && list.count > 1 &&
         !memory_holds(opts, info, list.count, scratch, sizeof scratch))
@@ -102,12 +100,6 @@ typedef struct channel_colors {
     snow_opacity_point opacities[4];
 } channel_colors;
 
-/* Red, green and blue of a colour, or of a map from black to one. */
-static bool find_rgb(const char *color, double rgb[3]) {
-    return channels_rgb(color, rgb) ||
-           light_of_colormap((size_t)snow_colormap_from_name(color), rgb);
-}
-
 /* Colours and, where no histogram is asked, opacities: those of a projection,
  * and of voxels that are colours: faint enough that the colour is not that of
  * the border, where values are between. */
@@ -119,7 +111,9 @@ static void take_color(const options *opts, const snow_channel *of,
     const bool flat = mode_is_projection(opts->mode);
     const double dim = flat || of->own ? 0 : DIM;
     double rgb[3];
-    if (find_rgb(pick->color, rgb)) {
+    /* A colour, or a map from black to one. */
+    if (channels_rgb(pick->color, rgb) ||
+        light_of_colormap((size_t)snow_colormap_from_name(pick->color), rgb)) {
         scratch->colors[0] =
             (snow_color_point){0, dim * rgb[0], dim * rgb[1], dim * rgb[2]};
         scratch->colors[1] = (snow_color_point){1, rgb[0], rgb[1], rgb[2]};

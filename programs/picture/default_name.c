@@ -31,13 +31,6 @@ static void take_name(const char *path, char out[STEM_BYTES]) {
     snprintf(out, STEM_BYTES, "%.*s", (int)(end - name), name);
 }
 
-/* Removes a suffix such as .nrrd; 1.2.840 has no suffix. */
-static void drop_suffix(char *name) {
-    char *dot = strrchr(name, '.');
-    if (dot && dot > name && isalpha((unsigned char)dot[1]))
-        *dot = '\0';
-}
-
 void default_stem(const char *given, char out[STEM_BYTES]) {
     bool phantom = strncmp(given, "phantom:", 8) == 0;
     const char *within = strstr(given, ":/"); /* a dataset of a file */
@@ -51,7 +44,9 @@ void default_stem(const char *given, char out[STEM_BYTES]) {
         return;
     if (dot && (strcmp(dot, ".gz") == 0 || strcmp(dot, ".zip") == 0))
         *dot = '\0';
-    drop_suffix(out);
+    dot = strrchr(out, '.'); /* 1.2.840 has no suffix */
+    if (dot && dot > out && isalpha((unsigned char)dot[1]))
+        *dot = '\0';
 }
 
 int default_name(options *opts) {
@@ -79,7 +74,7 @@ int default_name(options *opts) {
     int done = check_input_first(opts, &opts->output, 1);
     if (done != CONTINUE)
         return done;
-    if (same_place(path, opts->operands[0]))
+    if (same_output(path, opts->operands[0]))
         return fail_output("%s: is the input; give another name with -o", path);
     return fail_output("%s: exists, and is replaced only where it is named; "
                        "give another name with -o, or -o %s -y",

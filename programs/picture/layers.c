@@ -54,19 +54,6 @@ void layers_leave_out(options *opts) {
     opts->overlay_picks = false;
 }
 
-/* Labels where it has some; else, where nothing is asked, hot colours. */
-static snow_status choose_look(const snow_volume *of, snow_look *look,
-                               snow_transfer **out) {
-    snow_status status = snow_transfer_new_for_volume(of, look, out);
-    if (status != SNOW_STATUS_OK || look->preset || look->colormap ||
-        snow_transfer_label(*out, 0))
-        return status;
-    snow_transfer_free(*out);
-    *out = NULL;
-    look->colormap = "hot";
-    return snow_transfer_new_for_volume(of, look, out);
-}
-
 /* The opacities of a look, each times the factor; of labels at their numbers.
  * NULL: no memory. */
 static snow_opacity_point *scale_points(const snow_transfer *transfer,
@@ -90,8 +77,10 @@ static snow_opacity_point *scale_points(const snow_transfer *transfer,
     return out;
 }
 
-static snow_status make_look(const options *opts, const snow_volume *of,
-                             layers *l) {
+/* Labels where it has some; else, where nothing is asked, hot colours.  Values
+ * of all steps have the look of the first; labels may be others. */
+static snow_status make_look(const options *opts, layers *l) {
+    const snow_volume *of = l->own ? l->own : l->volume;
     const overlay_look_value *given = &opts->overlay_look;
     const range_value range = given->range;
     const point_list *asked = &given->opacity;
@@ -102,14 +91,26 @@ static snow_status make_look(const options *opts, const snow_volume *of,
                       .range = range.kind,
                       .low = range.low,
                       .high = range.high};
+    if (l->transfer && (l->own || !snow_transfer_label(l->transfer, 0)))
+        return SNOW_STATUS_OK;
+    layers_drop_look(l);
     if (asked->count && !factor) {
         look.opacities = asked->points;
         look.opacity_count = asked->count;
     }
     snow_transfer *whole = NULL;
-    snow_status status = choose_look(of, &look, factor ? &whole : &l->transfer);
-    if (status != SNOW_STATUS_OK || !factor)
+    snow_status status = snow_transfer_new_for_volume(of, &look, &whole);
+    if (status == SNOW_STATUS_OK && !look.preset && !look.colormap &&
+        !snow_transfer_label(whole, 0)) {
+        snow_transfer_free(whole);
+        whole = NULL;
+        look.colormap = "hot";
+        status = snow_transfer_new_for_volume(of, &look, &whole);
+    }
+    if (status != SNOW_STATUS_OK || !factor) {
+        l->transfer = whole;
         return status;
+    }
     snow_opacity_point *points =
         scale_points(whole, asked->points[0].opacity, &look.opacity_count);
     look.opacities = points;
@@ -118,22 +119,6 @@ static snow_status make_look(const options *opts, const snow_volume *of,
     free(points);
     snow_transfer_free(whole);
     return status;
-}
-
-/* Values of all steps have the look of the first; labels may be others. */
-static snow_status look_at(const options *opts, layers *l) {
-    if (l->transfer && (l->own || !snow_transfer_label(l->transfer, 0)))
-        return SNOW_STATUS_OK;
-    snow_transfer_free(l->transfer);
-    l->transfer = NULL;
-    return make_look(opts, l->own ? l->own : l->volume, l);
-}
-
-/* The voxels of what is kept, which the grid of the volume may replace. */
-static snow_status share_own(snow_context *context, layers *l) {
-    const snow_volume_info *info = snow_volume_get_info(l->own);
-    void *voxels = (void *)(uintptr_t)snow_volume_voxels(l->own);
-    return snow_volume_wrap(context, info, voxels, &l->volume);
 }
 
 /* The planes of the volume cut its overlay too. */
@@ -190,8 +175,10 @@ static void note_empty(const options *opts, snow_context *context,
         note_labels(opts, context);
 }
 
-static int fail_overlay(const options *opts, const snow_context *context,
-                        const layers *l, snow_status status) {
+static int check_overlay(const options *opts, const snow_context *context,
+                         const layers *l, snow_status status) {
+    if (status == SNOW_STATUS_OK)
+        return CONTINUE;
     if (l->quiet && status == SNOW_STATUS_NO_MEMORY)
         return status;
     if (status != SNOW_STATUS_BAD_USAGE)
@@ -291,8 +278,7 @@ static int open_step(const options *opts, snow_context *context,
             parts ? snow_volume_open_streamed(context, opts->overlay, &data,
                                               l->slab_bytes, &l->volume)
                   : snow_volume_open(context, opts->overlay, &data, &l->volume);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_overlay(opts, context, l, status);
+    return check_overlay(opts, context, l, status);
 }
 
 /* Whether what is open serves a volume too. */
@@ -324,21 +310,11 @@ static int read_layer(const options *opts, snow_context *context,
         l->own = l->volume;
         l->volume = NULL;
     }
-    status = share_own(context, l);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_overlay(opts, context, l, status);
-}
-
-/* The box of the volume: both have offsets now, which look like places. */
-static int put_on_box(const options *opts, snow_context *context,
-                      const snow_volume_info *whole, layers *l) {
-    snow_volume_info box = *whole;
-    for (int row = 0; row < 3; row++)
-        for (int c = 0; c < 3; c++)
-            box.matrix[row][3] += box.matrix[row][c] * (double)opts->crop[c][0];
-    const snow_status status = snow_volume_set_whole(l->volume, &box);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_overlay(opts, context, l, status);
+    /* The voxels of what is kept, which the grid of the volume may replace. */
+    const snow_volume_info *info = snow_volume_get_info(l->own);
+    void *voxels = (void *)(uintptr_t)snow_volume_voxels(l->own);
+    status = snow_volume_wrap(context, info, voxels, &l->volume);
+    return check_overlay(opts, context, l, status);
 }
 
 /* Its look is of the whole, so that only then it is cropped. */
@@ -354,7 +330,15 @@ static int crop_layer(const options *opts, snow_context *context,
             opts->overlay);
     layers_drop_volume(l);
     const int done = open_step(opts, context, grid, parts, true, l);
-    return done == CONTINUE ? put_on_box(opts, context, &whole, l) : done;
+    if (done != CONTINUE)
+        return done;
+    /* The box of the volume: both have offsets now, which look like places. */
+    for (int row = 0; row < 3; row++)
+        for (int c = 0; c < 3; c++)
+            whole.matrix[row][3] +=
+                whole.matrix[row][c] * (double)opts->crop[c][0];
+    return check_overlay(opts, context, l,
+                         snow_volume_set_whole(l->volume, &whole));
 }
 
 /* On the grid of a volume in memory, cut as it is.  Labels lie there by their
@@ -381,7 +365,7 @@ static int place(const options *opts, snow_context *context,
         status = clip(opts, l);
     l->placed = status == SNOW_STATUS_OK;
     l->nearest = nearest;
-    return l->placed ? CONTINUE : fail_overlay(opts, context, l, status);
+    return check_overlay(opts, context, l, status);
 }
 
 int layers_open(const options *opts, snow_context *context,
@@ -399,10 +383,8 @@ int layers_open(const options *opts, snow_context *context,
     }
     if (done != CONTINUE)
         return done;
-    snow_status status = look_at(opts, l);
-    if (status != SNOW_STATUS_OK)
-        return fail_overlay(opts, context, l, status);
-    if (!stays)
+    done = check_overlay(opts, context, l, make_look(opts, l));
+    if (done == CONTINUE && !stays)
         done = crop_layer(opts, context, grid, parts, l);
     if (done == CONTINUE && !parts)
         done = place(opts, context, base, first, l);

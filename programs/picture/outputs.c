@@ -45,7 +45,7 @@ static void folder_of(const char *path, char *out, size_t size) {
 /* Existing files are compared by device and inode, so that links and "./" do
  * not hide that they are equal.  For new files the folder and the name are
  * compared.  A device may take two streams. */
-bool same_place(const char *a, const char *b) {
+static bool same_place(const char *a, const char *b) {
     struct stat of_a, of_b;
     if (stat(a, &of_a) == 0 && stat(b, &of_b) == 0)
         return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev &&
@@ -57,6 +57,10 @@ bool same_place(const char *a, const char *b) {
     folder_of(b, folder_b, sizeof folder_b);
     return stat(folder_a, &of_a) == 0 && stat(folder_b, &of_b) == 0 &&
            of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+}
+
+bool same_output(const char *a, const char *b) {
+    return a && b && (strcmp(a, b) == 0 || same_place(a, b));
 }
 
 static int fail_existing(const char *path) {
@@ -142,21 +146,15 @@ static FILE *open_aside(const char *path, char *aside, size_t size) {
     return file;
 }
 
-/* Gives the finished file its name.  link fails if a file has appeared since
- * the check; rename would destroy it. */
-static int rename_aside(const char *aside, const char *path, bool overwrite) {
+/* link fails if a file has appeared since the check; rename would destroy
+ * it. */
+int name_output(const char *aside, const char *path, bool overwrite) {
     struct stat here;
-    if (!overwrite) {
-        if (link(aside, path) == 0)
-            return unlink(aside);
-        if (errno == EEXIST)
-            return -1;
-        if (lstat(path, &here) == 0) { /* no hard links here: check instead */
-            errno = EEXIST;
-            return -1;
-        }
-    }
-    return rename(aside, path);
+    if (!overwrite && link(aside, path) == 0)
+        return unlink(aside) == 0 ? 0 : errno;
+    if (!overwrite && (errno == EEXIST || lstat(path, &here) == 0))
+        return EEXIST; /* where there are no hard links, by lstat */
+    return rename(aside, path) == 0 ? 0 : errno;
 }
 
 /* Makes the new name survive a power failure, if the file system can. */
@@ -170,18 +168,14 @@ static void sync_folder(const char *path) {
     close(folder);
 }
 
-int name_output(const char *aside, const char *path, bool overwrite) {
-    return rename_aside(aside, path, overwrite) == 0 ? 0 : errno;
-}
-
 int place_output(const char *aside, const char *path, bool overwrite) {
     int file = open(aside, O_RDWR | O_CLOEXEC);
     if (file < 0)
         return errno;
     int number = fsync(file) != 0 && errno != EINVAL ? errno : 0;
     close(file);
-    if (number == 0 && rename_aside(aside, path, overwrite) != 0)
-        number = errno;
+    if (number == 0)
+        number = name_output(aside, path, overwrite);
     if (number == 0)
         sync_folder(path);
     return number;
@@ -194,18 +188,19 @@ static int write_aside(text_bytes text, const char *given, bool overwrite) {
     FILE *file = open_aside(path, aside, sizeof aside);
     if (!file)
         return -1;
-    int done = dump_text(text, file);
-    if (done == 0 && fsync(fileno(file)) != 0 && errno != EINVAL)
-        done = -1;
-    if (fclose(file) != 0 || done != 0 ||
-        rename_aside(aside, path, overwrite) != 0) {
-        int reason = errno;
+    int number = dump_text(text, file) == 0 ? 0 : errno;
+    if (number == 0 && fsync(fileno(file)) != 0 && errno != EINVAL)
+        number = errno;
+    if (fclose(file) != 0 && number == 0)
+        number = errno;
+    if (number == 0)
+        number = name_output(aside, path, overwrite);
+    if (number == 0)
+        sync_folder(path);
+    else
         unlink(aside);
-        errno = reason;
-        return -1;
-    }
-    sync_folder(path);
-    return 0;
+    errno = number;
+    return number == 0 ? 0 : -1;
 }
 
 /* For pipes and devices, which a rename would replace by a regular file. */

@@ -11,8 +11,9 @@
  * replace it, and a write may wait for its reader for ever. */
 bool is_special(const char *path);
 
-/* Whether two paths name the same file, even one that does not exist yet. */
-bool same_place(const char *a, const char *b);
+/* Whether two paths name the same file, even one that does not exist yet; NULL
+ * names none. */
+bool same_output(const char *a, const char *b);
 
 /* Refuses a folder where a file is to be written, also one that is named with
  * a slash but does not exist.  Returns CONTINUE or an exit code. */

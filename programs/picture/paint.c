@@ -66,25 +66,17 @@ int paint_copy(const options *opts, snow_context *context,
     return CONTINUE;
 }
 
-static bool is_clear(const options *opts) {
-    const color_value *color = &opts->background;
-    return mode_is_projection(opts->mode) && !color->given &&
-           !color->automatic && !keeps_values(opts->output);
-}
-
-/* The least opacity with which a colour can be laid over the lowest one. */
-static float opacity_of(float color, float low) {
-    float scratch = color > low ? 1 - low : low;
-    return fminf(fabsf(color - low) / fmaxf(scratch, ROOM), 1);
-}
-
 /* Takes the lowest colour out of a premultiplied pixel: over that colour it is
- * what it was. */
+ * what it was.  The opacity is the least with which it can be laid over it. */
 static void clear_pixel(float *pixel, int parts, const double low[3]) {
     const float cover = pixel[parts];
     float opacity = 0;
-    for (int c = 0; c < parts && cover > 0; c++)
-        opacity = fmaxf(opacity, opacity_of(pixel[c] / cover, (float)low[c]));
+    for (int c = 0; c < parts && cover > 0; c++) {
+        const float color = pixel[c] / cover, lowest = (float)low[c];
+        const float room = color > lowest ? 1 - lowest : lowest;
+        opacity =
+            fmaxf(opacity, fminf(fabsf(color - lowest) / fmaxf(room, ROOM), 1));
+    }
     pixel[parts] = opacity * cover;
     for (int c = 0; c < parts; c++) {
         float left = pixel[c] - (cover - pixel[parts]) * (float)low[c];
@@ -128,7 +120,8 @@ int paint_values(const options *opts, snow_context *context,
         return CONTINUE;
     if (snow_image_channels(*image) == 1)
         done = paint(opts, context, transfer, movie, image, given);
-    if (done == CONTINUE && is_clear(opts))
+    if (done == CONTINUE && mode_is_projection(opts->mode) &&
+        !opts->background.given && !opts->background.automatic)
         clear_lowest(transfer, *image);
     return done;
 }

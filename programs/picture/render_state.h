@@ -19,6 +19,13 @@ typedef struct render_state_shot {
     snow_image *made;       /* until it is finished; NULL: by the frame */
 } render_state_shot;
 
+/* What each rank reports to the others about a picture. */
+typedef struct rank_figures {
+    snow_stats stats;
+    double combine, gather; /* seconds */
+    uint64_t peak;
+} rank_figures;
+
 typedef struct render_state {
     const options *opts;
     const char *path; /* path of the volume */
@@ -52,8 +59,8 @@ typedef struct render_state {
     snow_stats stats;
     double combine, gather; /* seconds of stages of several ranks */
     uint64_t peak;          /* bytes; for ranks the maximum */
-    double load;   /* most interesting voxels of a rank, divided by the mean */
-    void *figures; /* figures of all ranks */
+    double load; /* most interesting voxels of a rank, divided by the mean */
+    rank_figures *figures; /* of all ranks */
 } render_state;
 
 /* Refuses options that ranks do not support.  Returns CONTINUE or an exit
@@ -99,5 +106,20 @@ void render_state_note(const render_state *s, const double painted[2]);
 
 /* Writes the line that reports the automatic choices, except its end. */
 void render_state_choices(const render_state *s, char *out, size_t size);
+
+/* --- between render_state.c and render_picture.c -------------------------- */
+
+/* Whether a status is a lack of memory that another beginning may help: with
+ * the volume in its file; with the first one of channels that nobody asked for,
+ * unless pictures before show them all. */
+bool render_state_may_start_over(const render_state *s, int status);
+int render_state_start_over(render_state *s, int64_t time);
+void render_state_drop_frame(render_state *s);
+
+/* Whether projections of channels are added up. */
+bool render_state_is_sum(const render_state *s);
+
+/* How ranks share the volume and the picture. */
+snow_ranks_options render_state_how(const render_state *s);
 
 #endif

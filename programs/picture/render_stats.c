@@ -13,13 +13,6 @@ static uint64_t volume_bytes(const snow_volume_info *info) {
            snow_type_size(info->type);
 }
 
-/* "none" if no encoding was used. */
-static const char *encoding_text(const snow_stats *stats) {
-    return stats->encoding == SNOW_ENCODING_AUTO
-               ? "none"
-               : snow_encoding_name(stats->encoding);
-}
-
 static json_t *volume_json(const snow_volume_info *info) {
     json_t *object = json_object();
     json_object_set_new(object, "dims", json_sizes(info->dims, 3));
@@ -100,7 +93,10 @@ json_t *stats_json(const render_report *report) {
     json_object_set_new(o, "volume", volume_json(report->volume));
     json_object_set_new(o, "threshold", json_number(settings->threshold));
     json_object_set_new(o, "sparse_ratio", json_number(stats->sparse_ratio));
-    json_object_set_new(o, "encoding", json_string(encoding_text(stats)));
+    const bool encoded = stats->encoding != SNOW_ENCODING_AUTO;
+    json_object_set_new(
+        o, "encoding",
+        json_string(encoded ? snow_encoding_name(stats->encoding) : "none"));
     json_object_set_new(o, "method",
                         json_string(snow_method_name(stats->method)));
     json_object_set_new(o, "kernel",

@@ -1,20 +1,12 @@
 /* picture/settings.c - the library's records of settings and view, from the
  * options. */
-#include "picture/settings.h"
+#include "commands/commands.h"
 #include "options/config.h"
 #include "run/log.h"
 #include "run/start.h"
 
 #include <math.h>
 #include <string.h>
-
-/* Whether opacities are per millimetre: a file of a transfer function may say
- * so, but a recipe has priority. */
-static bool is_per_mm(const options *opts) {
-    if (opts->loaded && !opts->opacity_unit)
-        return snow_look_file_look(opts->loaded)->per_mm;
-    return opts->opacity_unit && strcmp(opts->opacity_unit, "mm") == 0;
-}
 
 /* The length of a millimetre in the unit of the volume's world. */
 static int opacity_length(const options *opts, const snow_volume_info *info,
@@ -25,7 +17,12 @@ static int opacity_length(const options *opts, const snow_volume_info *info,
     } units[] = {{"", 1},     {"mm", 1},   {"um", 1e3},
                  {"nm", 1e6}, {"m", 1e-3}, {"angstrom", 1e7}};
     *out = 0;
-    if (!is_per_mm(opts))
+    /* A file of a transfer function may say so, but a recipe has priority. */
+    const bool per_mm =
+        opts->loaded && !opts->opacity_unit
+            ? snow_look_file_look(opts->loaded)->per_mm
+            : opts->opacity_unit && strcmp(opts->opacity_unit, "mm") == 0;
+    if (!per_mm)
         return CONTINUE;
     for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
         if (strcmp(units[i].unit, info->unit) == 0)

@@ -35,13 +35,11 @@ static bool is_named(const char *variable, const char *part) {
     return value && strstr(value, part);
 }
 
-static bool is_multiplexed(void) {
-    return getenv("TMUX") || getenv("STY") || is_named("TERM", "screen") ||
-           is_named("TERM", "tmux");
-}
-
 static bool has_kitty(void) {
-    if (is_multiplexed())
+    const bool multiplexed = getenv("TMUX") || getenv("STY") ||
+                             is_named("TERM", "screen") ||
+                             is_named("TERM", "tmux");
+    if (multiplexed)
         return false;
     return getenv("KITTY_WINDOW_ID") || is_named("TERM", "kitty") ||
            is_named("TERM", "ghostty") || is_named("TERM_PROGRAM", "ghostty") ||

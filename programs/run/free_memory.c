@@ -39,13 +39,6 @@ static bool number_of(const char *path, const char *key, uint64_t *out) {
     return found;
 }
 
-static uint64_t free_of_machine(void) {
-    uint64_t kilobytes;
-    return number_of("/proc/meminfo", "MemAvailable:", &kilobytes)
-               ? kilobytes * 1024
-               : UINT64_MAX;
-}
-
 /* What the limit of a group leaves, from the group's files of these names. */
 static uint64_t free_of_group(const char *folder, const char *group,
                               const char *limit_name, const char *used_name,
@@ -115,6 +108,10 @@ static uint64_t free_addresses(void) {
 }
 
 uint64_t free_memory(void) {
-    return lesser(lesser(free_of_machine(), free_of_groups()),
+    uint64_t kilobytes;
+    return lesser(lesser(number_of("/proc/meminfo", "MemAvailable:", &kilobytes)
+                             ? kilobytes * 1024
+                             : UINT64_MAX,
+                         free_of_groups()),
                   free_addresses());
 }

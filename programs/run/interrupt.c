@@ -133,10 +133,6 @@ void interrupt_hold_movie(void) {
     interrupt_hold();
 }
 
-bool interrupt_seen(void) {
-    return pending != 0;
-}
-
 void interrupt_write_to(int descriptor) {
     message_fd = descriptor;
 }

@@ -39,12 +39,9 @@ void interrupt_hold(void);
 /* All files are there: signals change the exit status no more. */
 void interrupt_finish(void);
 
-/* The same for a movie, which polls interrupt_seen; the first signal is
+/* The same for a movie, which polls interrupt_asked; the first signal is
  * reported. */
 void interrupt_hold_movie(void);
-
-/* Whether a signal has come since. */
-bool interrupt_seen(void);
 
 /* From here on nothing is printed.  Of all ranks only the first reports an
  * interruption, and none does when the work is done. */

@@ -10,9 +10,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <math.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,10 +40,6 @@ static pthread_mutex_t talking = PTHREAD_MUTEX_INITIALIZER;
 
 /* Where messages go, if not to standard error. */
 static FILE *own;
-
-static FILE *messages(void) {
-    return own ? own : stderr;
-}
 
 /* Libraries underneath write to descriptor 2 itself. */
 void silence_others(void) {
@@ -106,7 +100,7 @@ static void say_list(const char *format, va_list arguments) {
     }
     pthread_mutex_lock(&talking);
     wipe_stage();
-    fprintf(messages(), "snowglass: %s\n", line);
+    fprintf(own ? own : stderr, "snowglass: %s\n", line);
     pthread_mutex_unlock(&talking);
 }
 
@@ -138,28 +132,12 @@ void say_now(bool drop) {
     lines = NULL;
 }
 
-int fail_usage(const char *format, ...) {
+int fail_with(snow_status status, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     say_list(format, arguments);
     va_end(arguments);
-    return SNOW_STATUS_BAD_USAGE;
-}
-
-int fail_output(const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    say_list(format, arguments);
-    va_end(arguments);
-    return SNOW_STATUS_BAD_OUTPUT;
-}
-
-int fail_memory(const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    say_list(format, arguments);
-    va_end(arguments);
-    return SNOW_STATUS_NO_MEMORY;
+    return (int)status;
 }
 
 /* The library's message is complete: file, error, advice.  A lost rank makes
@@ -176,6 +154,10 @@ int fail_status(const snow_context *context, snow_status status) {
     return (int)status;
 }
 
+int check_status(const snow_context *context, snow_status status) {
+    return status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
+}
+
 int fail_volume(const snow_context *context, snow_status status,
                 const char *input) {
     const char *message = snow_context_message(context);
@@ -185,6 +167,12 @@ int fail_volume(const snow_context *context, snow_status status,
         return fail_status(context, status);
     say("%s: %s", input, message);
     return (int)status;
+}
+
+int check_volume(const snow_context *context, snow_status status,
+                 const char *input) {
+    return status == SNOW_STATUS_OK ? CONTINUE
+                                    : fail_volume(context, status, input);
 }
 
 /* So many notes are remembered, as many bytes of each. */
@@ -272,115 +260,6 @@ void progress(const options *opts, const char *stage) {
         say("%s", stage);
 }
 
-/* --- a long stage --------------------------------------------------------- */
-
-/* Seconds between two reports of a long stage: on a terminal, elsewhere. */
-#define LIVE_SECONDS 1
-#define LINE_SECONDS 10
-
-/* The thread that reports it; only one stage is active at a time. */
-static struct {
-    pthread_t thread;
-    pthread_mutex_t lock;
-    pthread_cond_t ended;
-    bool running, ending;
-    const options *opts;
-    const char *stage;
-    double begin;
-    double fraction; /* of it, as far as the library has said; below 0: not */
-} clock_of_stage = {.lock = PTHREAD_MUTEX_INITIALIZER,
-                    .ended = PTHREAD_COND_INITIALIZER};
-
-#define BAR_CELLS 20
-
-void progress_bar(double fraction, char *out, size_t size) {
-    char bar[BAR_CELLS + 1] = "";
-    int full = (int)(fraction * BAR_CELLS);
-    for (int i = 0; i < BAR_CELLS; i++)
-        bar[i] = i < full ? '#' : '-';
-    snprintf(out, size, "[%s] ", bar);
-}
-
-/* "[####----------------] reading, 22 %, 3 s" (under the lock). */
-static void report_stage(void) {
-    char bar[BAR_CELLS + 4] = "", share[16] = "", line[80];
-    if (clock_of_stage.fraction >= 0)
-        snprintf(share, sizeof share, ", %.0f %%",
-                 100 * clock_of_stage.fraction);
-    if (clock_of_stage.fraction >= 0 && progress_is_live())
-        progress_bar(clock_of_stage.fraction, bar, sizeof bar);
-    snprintf(line, sizeof line, "%s%s%s, %.0f s", bar, clock_of_stage.stage,
-             share, seconds_now() - clock_of_stage.begin);
-    if (progress_is_live())
-        progress(clock_of_stage.opts, line);
-    else
-        say("%s", line);
-}
-
-static void *watch_stage(void *unused) {
-    (void)unused;
-    pthread_mutex_lock(&clock_of_stage.lock);
-    while (!clock_of_stage.ending) {
-        struct timespec until;
-        clock_gettime(CLOCK_REALTIME, &until);
-        until.tv_sec += progress_is_live() ? LIVE_SECONDS : LINE_SECONDS;
-        if (pthread_cond_timedwait(&clock_of_stage.ended, &clock_of_stage.lock,
-                                   &until) == ETIMEDOUT &&
-            !clock_of_stage.ending)
-            report_stage();
-    }
-    pthread_mutex_unlock(&clock_of_stage.lock);
-    return NULL;
-}
-
-/* Signals are handled by the thread that waits for them. */
-void progress_begin(const options *opts, const char *stage) {
-    sigset_t all, before;
-    progress(opts, stage);
-    if (!progress_is_wanted(opts))
-        return;
-    clock_of_stage.opts = opts;
-    clock_of_stage.stage = stage;
-    clock_of_stage.begin = seconds_now();
-    clock_of_stage.fraction = -1;
-    clock_of_stage.ending = false;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    clock_of_stage.running =
-        pthread_create(&clock_of_stage.thread, NULL, watch_stage, NULL) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-}
-
-void progress_end(const options *opts) {
-    if (clock_of_stage.running) {
-        pthread_mutex_lock(&clock_of_stage.lock);
-        clock_of_stage.ending = true;
-        pthread_cond_signal(&clock_of_stage.ended);
-        pthread_mutex_unlock(&clock_of_stage.lock);
-        pthread_join(clock_of_stage.thread, NULL);
-        clock_of_stage.running = false;
-    }
-    progress(opts, NULL);
-}
-
-bool progress_show(void *unused, snow_stage stage, double fraction) {
-    static const char *const names[] = {[SNOW_STAGE_READ] = "reading",
-                                        [SNOW_STAGE_ENCODE] = "encoding",
-                                        [SNOW_STAGE_RENDER] = "rendering",
-                                        [SNOW_STAGE_WRITE] = "writing"};
-    (void)unused;
-    pthread_mutex_lock(&clock_of_stage.lock);
-    if (clock_of_stage.running) {
-        clock_of_stage.stage = names[stage];
-        clock_of_stage.fraction = fraction;
-        if (progress_is_live())
-            report_stage();
-    }
-    pthread_mutex_unlock(&clock_of_stage.lock);
-    /* What is being written is let go (interrupt.h). */
-    return stage != SNOW_STAGE_WRITE && interrupt_asked(NULL);
-}
-
 /* printf only fills a buffer: a full disk or a reader that went away shows
  * when it is flushed, and must not end in exit code 0. */
 int finish_stdout(void) {
@@ -390,30 +269,4 @@ int finish_stdout(void) {
     return fail_output(
         "standard output: %s; write to a file system with free space",
         errno ? strerror(errno) : "cannot be written");
-}
-
-/* JSON has no NaN and no infinity; jansson would drop the key silently. */
-json_t *json_number(double value) {
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-json_t *json_vector(const double *values, size_t count) {
-    json_t *array = json_array();
-    for (size_t i = 0; i < count; i++)
-        json_array_append_new(array, json_number(values[i]));
-    return array;
-}
-
-json_t *json_sizes(const int64_t *values, size_t count) {
-    json_t *array = json_array();
-    for (size_t i = 0; i < count; i++)
-        json_array_append_new(array, json_integer(values[i]));
-    return array;
-}
-
-int print_json(json_t *object) {
-    if (json_dumpf(object, stdout, JSON_FORM) == 0)
-        putchar('\n');
-    json_decref(object);
-    return finish_stdout();
 }

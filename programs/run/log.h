@@ -24,9 +24,10 @@ void say_now(bool drop);
 const char *last_said(void);
 
 /* Print an error and return its exit code. */
-int fail_usage(const char *format, ...) SNOW_PRINTF(1, 2);
-int fail_output(const char *format, ...) SNOW_PRINTF(1, 2);
-int fail_memory(const char *format, ...) SNOW_PRINTF(1, 2);
+int fail_with(snow_status status, const char *format, ...) SNOW_PRINTF(2, 3);
+#define fail_usage(...) fail_with(SNOW_STATUS_BAD_USAGE, __VA_ARGS__)
+#define fail_output(...) fail_with(SNOW_STATUS_BAD_OUTPUT, __VA_ARGS__)
+#define fail_memory(...) fail_with(SNOW_STATUS_NO_MEMORY, __VA_ARGS__)
 int fail_status(const snow_context *context, snow_status status);
 
 /* The same for a stage that gets a volume in memory.  Its errors about the
@@ -34,6 +35,12 @@ int fail_status(const snow_context *context, snow_status status);
  * adds the name. */
 int fail_volume(const snow_context *context, snow_status status,
                 const char *input);
+
+/* The same where the status may be SNOW_STATUS_OK, for which they return
+ * CONTINUE. */
+int check_status(const snow_context *context, snow_status status);
+int check_volume(const snow_context *context, snow_status status,
+                 const char *input);
 
 /* From here on only this program's own messages are seen: what the libraries
  * underneath write to standard error is dropped. */
@@ -84,6 +91,7 @@ int finish_stdout(void);
 json_t *json_number(double value);
 json_t *json_vector(const double *values, size_t count);
 json_t *json_sizes(const int64_t *values, size_t count);
+json_t *json_names(const char *(*at)(size_t)); /* until it returns NULL */
 
 /* One line; digits that bring every double back. */
 #define JSON_FORM JSON_REAL_PRECISION(17)

@@ -23,12 +23,6 @@
 #define PLACE_SHARE 7  /* EA: one byte for this many voxels */
 #define MASK_BYTES 1   /* of shear-warp: masks and bounds of cells */
 
-/* Rows of integers of 8 and 16 bits are as they are, and other types numbers of
- * 16 bits; where they are not read in place, they are packed too. */
-static double shear_warp_bytes(double value_bytes) {
-    return 2 * (value_bytes > 1 ? 2 : 1) + MASK_BYTES;
-}
-
 /* Bytes of an interesting voxel, without the arrays that all voxels share. */
 static double encoded_bytes(const options *opts, const snow_volume_info *info) {
     if (strcmp(opts->method, "original") == 0 ||
@@ -36,7 +30,10 @@ static double encoded_bytes(const options *opts, const snow_volume_info *info) {
         return 0;
     if (strcmp(opts->method, "footprint") == 0)
         return PIXEL_BYTES + 1.0 / PLACE_SHARE;
-    return shear_warp_bytes((double)snow_type_size(info->type));
+    /* Rows of integers of 8 and 16 bits are as they are, and other types
+     * numbers of 16 bits; where they are not read in place, they are packed
+     * too. */
+    return 2 * (snow_type_size(info->type) > 1 ? 2 : 1) + MASK_BYTES;
 }
 
 /* Bytes of the largest intermediate image: the two sides of a slice, each
@@ -90,11 +87,6 @@ static uint64_t native_bytes(snow_context *context, const char *path,
            snow_type_size(info.type);
 }
 
-/* For the magnitude, a component beside the result. */
-static uint64_t component_bytes(const snow_volume_info *info, uint64_t voxels) {
-    return info->magnitude ? voxels : 0;
-}
-
 /* The mask, and the volume before masking or clipping (*stored), are in memory
  * together with the result. */
 static uint64_t masking_bytes(snow_context *context, const char *path,
@@ -122,14 +114,6 @@ static bool is_packed(const char *path, uint64_t voxels) {
     return bytes > 65536 && bytes < voxels / 10 * 9;
 }
 
-/* Whether the input is a pipe, which can be read only once. */
-static bool is_read_once(const char *path) {
-    struct stat about;
-    return strcmp(path, "-") == 0 ||
-           (stat(path, &about) == 0 && !S_ISREG(about.st_mode) &&
-            !S_ISDIR(about.st_mode));
-}
-
 /* Others of the same size, which are read beside the first. */
 static void add_channels(const options *opts, int more, sizes *s) {
     const memory_need one = memory_needed(opts, &s->info);
@@ -147,7 +131,11 @@ static bool measure(const options *opts, const char *path,
                     const snow_volume_options *data, int count, sizes *out) {
     sizes s = {.info = {.size = sizeof s.info}, .picture = picture_bytes(opts)};
     snow_context *context;
-    if (is_read_once(path) ||
+    struct stat about;
+    const bool piped = strcmp(path, "-") == 0 ||
+                       (stat(path, &about) == 0 && !S_ISREG(about.st_mode) &&
+                        !S_ISDIR(about.st_mode));
+    if (piped /* and can be read only once */ ||
         snow_context_new(NULL, &context) != SNOW_STATUS_OK)
         return false;
     bool fine =
@@ -159,7 +147,8 @@ static bool measure(const options *opts, const char *path,
         s.masking = masking_bytes(context, path, data, &stored);
         s.need = memory_needed(opts, &s.info);
         s.voxels = s.need.least - s.picture;
-        s.masking += component_bytes(&s.info, s.voxels);
+        /* For the magnitude, a component beside the result. */
+        s.masking += s.info.magnitude ? s.voxels : 0;
         if (s.voxels + s.masking > s.need.least)
             s.need.least = s.voxels + s.masking;
         s.need.least += overlay;
@@ -298,16 +287,6 @@ static bool is_small_folder(const char *path) {
     return bytes < free_memory() / 8;
 }
 
-static int threads_of(const options *opts) {
-    return opts->threads ? (int)opts->threads : process_processors();
-}
-
-static void report_need(const sizes *s) {
-    char least[32], most[32];
-    say("memory: at least %s, about %s if all voxels are interesting",
-        print_bytes(s->need.least, least), print_bytes(s->need.most, most));
-}
-
 /* Refuses the volume.  `why` says why all voxels must be in memory at once;
  * NULL if slabs would do but do not fit either. */
 static int refuse_volume(const sizes *s, const char *path, uint64_t limit,
@@ -345,11 +324,16 @@ int memory_plan_for(const options *opts, const char *path,
         out->may_stream = false;
         return CONTINUE;
     }
-    if (report)
-        report_need(&s);
+    if (report) {
+        char least[32], most[32];
+        say("memory: at least %s, about %s if all voxels are interesting",
+            print_bytes(s.need.least, least), print_bytes(s.need.most, most));
+    }
     limit = limit_of(opts, &own);
     if (limit)
-        out->slab_bytes = choose_slab(&s, limit, threads_of(opts));
+        out->slab_bytes = choose_slab(&s, limit,
+                                      opts->threads ? (int)opts->threads
+                                                    : process_processors());
     out->packed = s.packed;
     if (!limit || s.need.least <= limit)
         return CONTINUE;

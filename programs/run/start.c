@@ -20,17 +20,13 @@ static int number_given(const char *name) {
 
 /* The processors that Slurm has assigned to a task, or to a job on this
  * machine, count even if Slurm does not bind the processes. */
-static void heed_slurm(void) {
+void process_begin(const process_start *how) {
+    now = *how;
     int limit = number_given("SLURM_CPUS_PER_TASK");
     if (!limit && !now.comm)
         limit = number_given("SLURM_CPUS_ON_NODE");
     if (limit && limit < process_processors())
         now.threads = limit;
-}
-
-void process_begin(const process_start *how) {
-    now = *how;
-    heed_slurm();
     if (!process_talks())
         interrupt_mute();
 }

@@ -220,10 +220,9 @@ static int place(drawing *d) {
     render_state_choose_shade(s);
     if (strcmp(d->opts.fit, "visible") != 0)
         return CONTINUE;
-    snow_status status = snow_view_fit(comm_of_all(), s->volume, framed_by(d),
-                                       &s->settings, NULL, 0, &s->view);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(s->context, status);
+    return check_status(s->context,
+                        snow_view_fit(comm_of_all(), s->volume, framed_by(d),
+                                      &s->settings, NULL, 0, &s->view));
 }
 
 /* After a fault nothing is known of volume and look. */

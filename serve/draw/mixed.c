@@ -44,11 +44,6 @@ static shown_channels numbers_of(const drawing *d, const channel_list *list) {
     return now;
 }
 
-static bool are_same(const shown_channels *a, const shown_channels *b) {
-    return a->count == b->count &&
-           memcmp(a->index, b->index, sizeof *a->index * (size_t)a->count) == 0;
-}
-
 /* --- which are open ------------------------------------------------------- */
 
 /* What is drawn, and what was put away before. */
@@ -127,7 +122,10 @@ int mixed_follow(drawing *d, bool *anew, bool *other) {
     if (done != CONTINUE)
         return done;
     const shown_channels now = numbers_of(d, &list);
-    *other = !are_same(&now, &d->shown);
+    const bool same = now.count == d->shown.count &&
+                      memcmp(now.index, d->shown.index,
+                             sizeof *now.index * (size_t)now.count) == 0;
+    *other = !same;
     *anew = *other && !rearrange(d, &list, &now);
     d->shown = now;
     return CONTINUE;

@@ -54,6 +54,5 @@ int pick_depth(drawing *d, double x, double y, double *depth) {
                       (int)(y * view.height));
     snow_image_free(image);
     snow_frame_free(frame);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(s->context, status);
+    return check_status(s->context, status);
 }

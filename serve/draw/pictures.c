@@ -51,10 +51,9 @@ static int annotate(drawing *d, const paint_given *painted,
         {painted->range[0], painted->range[1]},
         &s->channels,
         layers_legend(&s->layers, false)};
-    snow_status status = annotations_make(&annotations, s->view.azimuth, -1,
-                                          image, s->context, out);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(s->context, status);
+    return check_status(s->context,
+                        annotations_make(&annotations, s->view.azimuth, -1,
+                                         image, s->context, out));
 }
 
 static int draw(drawing *d, snow_image **image, paint_given *painted) {

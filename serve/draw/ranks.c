@@ -122,7 +122,5 @@ int ranks_follow(drawing *d) {
             make_call(d, (ranks_call)head.call, given);
         json_decref(given);
     }
-    return status == SNOW_STATUS_OK
-               ? CONTINUE
-               : fail_status(snow_comm_context(comm), status);
+    return check_status(snow_comm_context(comm), status);
 }

@@ -170,9 +170,7 @@ static int restyle(drawing *d, const options *opts, const json_t *tree,
     d->slice_channels.list = opts->channels;
     if (!opts->channels.count)
         return open_look(d->state.context, opts, volumes[0], &d->slice_look);
-    snow_status status = open_looks(d, opts, volumes);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(d->state.context, status);
+    return check_status(d->state.context, open_looks(d, opts, volumes));
 }
 
 /* --- the picture ---------------------------------------------------------- */
@@ -271,8 +269,7 @@ static int draw(drawing *d, snow_volume *const *volumes, const char *axis,
         status = layers_lay_slice(opts, overlay, index, &view, &settings,
                                   d->state.context, image);
     }
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(d->state.context, status);
+    return check_status(d->state.context, status);
 }
 
 static int check_slice(drawing *d, const slice_asked *asked, int *along) {

@@ -57,6 +57,5 @@ int small_thumbnail(drawing *d, const char *preset, int side,
         status = small_render(d, transfer, &view, &settings, &frame, image);
     snow_frame_free(frame);
     snow_transfer_free(transfer);
-    return status == SNOW_STATUS_OK ? CONTINUE
-                                    : fail_status(s->context, status);
+    return check_status(s->context, status);
 }

@@ -55,9 +55,7 @@ static snow_status visit_own(drawing *d, visit_fn *visit, void *user,
 }
 
 static int agree(const drawing *d, snow_status status) {
-    return process_agree(status == SNOW_STATUS_OK
-                             ? CONTINUE
-                             : fail_status(d->state.context, status));
+    return process_agree(check_status(d->state.context, status));
 }
 
 static snow_status measure(const snow_volume *voxels, void *user) {

@@ -40,13 +40,6 @@ static bool is_picture(const outgoing *p) {
     return p->topic == MESSAGE_PICTURE || p->topic == MESSAGE_THIN_PICTURE;
 }
 
-/* The picture at rest, whose head says so, is one for all links. */
-static bool is_for_link(const client *c, const outgoing *p) {
-    bool final = p->topic == MESSAGE_PICTURE && p->bytes[8] == 2;
-    return !is_picture(p) || final ||
-           c->thin == (p->topic == MESSAGE_THIN_PICTURE);
-}
-
 /* Of all pictures that wait, for whichever link, only the newest is sent. */
 static void forget_pictures(client *c, outbox *box) {
     int left = 0;
@@ -59,7 +52,10 @@ static void forget_pictures(client *c, outbox *box) {
 }
 
 void client_queue(client *c, outbox *box, outgoing *p) {
-    if (!is_for_link(c, p))
+    /* The picture at rest, whose head says so, is one for all links. */
+    bool final = p->topic == MESSAGE_PICTURE && p->bytes[8] == 2;
+    if (is_picture(p) && !final &&
+        c->thin != (p->topic == MESSAGE_THIN_PICTURE))
         return;
     if (is_picture(p))
         forget_pictures(c, box);
@@ -74,13 +70,6 @@ void client_queue(client *c, outbox *box, outgoing *p) {
         c->too_slow = true;
     else
         c->queue[c->count++] = outgoing_share(box, p);
-}
-
-static bool has_picture(const client *c) {
-    for (int i = 0; i < c->count; i++)
-        if (is_picture(c->queue[i]))
-            return true;
-    return false;
 }
 
 int client_quality(const client *c) {
@@ -137,7 +126,10 @@ bool client_acknowledge(client *c) {
     bool thin = c->thin;
     int quality = client_quality(c);
     note_painted(c);
-    c->blocked += 0.2 * ((has_picture(c) ? 1 : 0) - c->blocked);
+    int waits = 0; /* 1: a picture does */
+    for (int i = 0; i < c->count; i++)
+        waits |= is_picture(c->queue[i]);
+    c->blocked += 0.2 * (waits - c->blocked);
     c->thin = c->webp && c->blocked > (c->thin ? 0.02 : 0.6);
     return c->thin != thin || client_quality(c) != quality;
 }

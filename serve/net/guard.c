@@ -77,19 +77,16 @@ bool guard_embed(guard *g, const char *list) {
     }
 }
 
-/* The length of a name without ":8000". */
-static size_t name_length(const char *host) {
-    const char *colon = strrchr(host, ':');
-    size_t digits = colon ? strspn(colon + 1, "0123456789") : 0;
-    return colon && digits && !colon[1 + digits] ? (size_t)(colon - host)
-                                                 : strlen(host);
-}
-
 static bool is_named(const guard *g, int index, const char *host) {
     const char *name = g->hosts[index];
     if (strcasecmp(name, host) == 0)
         return true;
-    size_t length = name_length(host);
+    /* The length of a name without ":8000". */
+    const char *colon = strrchr(host, ':');
+    size_t digits = colon ? strspn(colon + 1, "0123456789") : 0;
+    size_t length = colon && digits && !colon[1 + digits]
+                        ? (size_t)(colon - host)
+                        : strlen(host);
     return g->any_port && index < g->own && strlen(name) == length &&
            strncasecmp(name, host, length) == 0;
 }

@@ -139,13 +139,6 @@ static int send_file(struct lws *wsi, const page_file *file, bool body) {
     return finish(wsi, good);
 }
 
-static const page_file *file_named(const char *name) {
-    for (const page_file *file = page_files; name && file->name; file++)
-        if (strcmp(file->name, name) == 0)
-            return file;
-    return NULL;
-}
-
 int pages_answer(struct lws *wsi, const guard *g, const char *path) {
     char host[GUARD_HOST_BYTES];
     char *uri;
@@ -159,7 +152,10 @@ int pages_answer(struct lws *wsi, const guard *g, const char *path) {
     int method = lws_http_get_uri_and_method(wsi, &uri, &length);
     if (method != LWSHUMETH_GET && method != LWSHUMETH_HEAD)
         return refuse(wsi, 405, "Only GET is understood.\n");
-    const page_file *file = file_named(guard_page(path));
-    return file ? send_file(wsi, file, method == LWSHUMETH_GET)
-                : refuse(wsi, 404, "There is no such page.\n");
+    const char *name = guard_page(path);
+    const page_file *file = page_files;
+    while (name && file->name && strcmp(file->name, name) != 0)
+        file++;
+    return name && file->name ? send_file(wsi, file, method == LWSHUMETH_GET)
+                              : refuse(wsi, 404, "There is no such page.\n");
 }

@@ -1,0 +1,41 @@
+/* movie_frame.h - a movie that is made, and what becomes of each frame.
+ *
+ * The thread that renders puts pictures into a queue; its workers make a file
+ * of each, and the bytes for ffmpeg.  A frame's way:
+ *
+ *   render -> copy -> compress aside, sync | record, rename, bytes to ffmpeg
+ *                     several at once      | one after another
+ *
+ * Frames that an earlier run has left whole go the second half only, and only
+ * where there is an ffmpeg to feed. */
+#ifndef MOVIE_FRAME_H
+#define MOVIE_FRAME_H
+
+#include "movie/frames.h"
+#include "movie/movie_encoder.h"
+#include "movie/movie_record.h"
+
+struct movie {
+    const options *opts;
+    const shot_list *list;
+    movie_place place;
+    frame_record record;
+    snow_context *context;
+    frame_queue *queue;
+    movie_encoder encoder;
+    bool encoding; /* ffmpeg runs and takes the frames */
+    bool claimed;  /* the record belongs to this run */
+    bool begun;    /* and has been written */
+    bool made_folder;
+    snow_image_options form;         /* the form of the frames' files */
+    picture_annotations annotations; /* known from the first picture on */
+    bool has_annotations;
+    double *times; /* physical ones of the frames, as their pictures come */
+};
+
+/* The two halves, and what ends a slot (frames.h); `user` is a movie. */
+snow_status movie_frame_prepare(void *user, frame_slot *slot);
+snow_status movie_frame_commit(void *user, frame_slot *slot);
+void movie_frame_release(void *user, frame_slot *slot);
+
+#endif
