@@ -116,15 +116,6 @@ static double round_above(double length) {
                                                  : snow_round_below(2 * below);
 }
 
-/* "-1000", "0.25", "1e+07", with as many digits as the step needs; rounding
- * leaves no -0. */
-static void write_tick(double value, double step, char *out, size_t size) {
-    if (fabs(value) < step / 1000)
-        value = 0;
-    double digits = value != 0 ? ceil(log10(fabs(value) / step) + 1.5) : 6;
-    snprintf(out, size, "%.*g", (int)fmin(fmax(digits, 6), 15), value);
-}
-
 /* The multiples of a step within the bar. */
 static double count_ticks(const color_bar *bar, double step, double *first) {
     *first = ceil(bar->low / step - 1e-6);
@@ -235,8 +226,13 @@ static snow_status draw_ticks(snow_overlay *overlay, const color_bar *bar) {
     for (int n = 0; n < ticks.number_count; n++) {
         char text[40];
         double value = ticks.numbers[n];
-        write_tick(value, ticks.step > 0 ? ticks.step : fabs(value), text,
-                   sizeof text);
+        /* "-1000", "0.25", "1e+07", with as many digits as the step needs;
+         * rounding leaves no -0. */
+        const double step = ticks.step > 0 ? ticks.step : fabs(value);
+        const double shown = fabs(value) < step / 1000 ? 0 : value;
+        double digits = shown != 0 ? ceil(log10(fabs(shown) / step) + 1.5) : 6;
+        snprintf(text, sizeof text, "%.*g", (int)fmin(fmax(digits, 6), 15),
+                 shown);
         SNOW_TRY(snow_overlay_text(overlay, bar->x0 - 0.9 * bar->height,
                                    place_of(bar, value), 1, 0.5, bar->height,
                                    text));

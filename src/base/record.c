@@ -1,14 +1,11 @@
 /* base/record.c - records that grow at their end: snowglass/extend.h. */
 #include "base/base.h"
+#include "base/minmax.h"
 
 #include <string.h>
 
 /* A record that is so many bytes longer than ours was not initialised. */
 #define GROWTH_MOST 4096
-
-static size_t least(size_t a, size_t b) {
-    return a < b ? a : b;
-}
 
 static size_t size_of(const void *record) {
     size_t size;
@@ -30,7 +27,7 @@ void snow_record_init(void *made, size_t size, const void *defaults,
                       size_t known) {
     memset(made, 0, size);
     if (defaults)
-        memcpy(made, defaults, least(size, known));
+        memcpy(made, defaults, SNOW_MIN(size, known));
     memcpy(made, &size, sizeof size);
 }
 
@@ -51,7 +48,7 @@ snow_status snow_record_read(snow_context *context, const char *name,
                           name, size, known);
             return SNOW_STATUS_BAD_USAGE;
         }
-    memcpy(copy, given, least(size, known));
+    memcpy(copy, given, SNOW_MIN(size, known));
     memcpy(copy, &known, sizeof known);
     return SNOW_STATUS_OK;
 }
@@ -60,7 +57,7 @@ snow_status snow_record_fill(snow_context *context, const char *name,
                              const void *made, size_t known, void *out) {
     size_t size = size_of(out);
     SNOW_TRY(check_size(context, name, size, known));
-    memcpy(out, made, least(size, known));
+    memcpy(out, made, SNOW_MIN(size, known));
     memcpy(out, &size, sizeof size);
     return SNOW_STATUS_OK;
 }

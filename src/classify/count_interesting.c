@@ -311,12 +311,6 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
 /* Voxels for which a thread is worth the memory of its rows. */
 #define THREAD_VOXELS (INT64_C(1) << 22)
 
-static int useful_threads(const snow_extent *part, int threads) {
-    const int64_t *count = part->count;
-    const int64_t most = 1 + count[0] * count[1] * count[2] / THREAD_VOXELS;
-    return most < threads ? (int)most : threads;
-}
-
 /* A single block holds the whole grid. */
 snow_status snow_count_interesting(const snow_volume *volume,
                                    const snow_transfer *transfer,
@@ -329,9 +323,11 @@ snow_status snow_count_interesting(const snow_volume *volume,
     for (int axis = 0; axis < 3; axis++)
         block_counts.grid.dims[axis] = block_counts.block[axis] =
             part.dims[axis];
-    SNOW_TRY(snow_count_interesting_blocks(volume, transfer, threshold, isa,
-                                           useful_threads(&part, threads),
-                                           &block_counts));
+    const int64_t useful =
+        1 + part.count[0] * part.count[1] * part.count[2] / THREAD_VOXELS;
+    SNOW_TRY(snow_count_interesting_blocks(
+        volume, transfer, threshold, isa,
+        useful < threads ? (int)useful : threads, &block_counts));
     *out = count;
     return SNOW_STATUS_OK;
 }

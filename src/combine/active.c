@@ -16,15 +16,6 @@ static int population(uint64_t bits) {
 
 /* --- the local image ------------------------------------------------------ */
 
-/* The mask of `count` <= 64 pixels of line y from column x on, all drawn. */
-static uint64_t active_mask(const snow_pixel_loops *loops,
-                            const snow_exchange_params *order, int y, int x,
-                            int count) {
-    return loops->look(order->pixels + (size_t)y * order->stride +
-                           (size_t)x * (size_t)order->channels,
-                       count);
-}
-
 /* Clips columns x0 .. x1 - 1 of line y to the drawn ones; none if x0 >= x1. */
 static void clip(const snow_exchange_params *order, int y, int *x0, int *x1) {
     const snow_rectangle *drawn = &order->drawn;
@@ -66,9 +57,11 @@ int64_t snow_active_in_line(const snow_pixel_loops *loops,
     int x0 = 0, x1 = order->width;
     int64_t active = 0;
     clip(order, y, &x0, &x1);
+    const float *line = order->pixels + (size_t)y * order->stride;
     for (int x = x0; x < x1; x += 64)
-        active += population(
-            active_mask(loops, order, y, x, x1 - x < 64 ? x1 - x : 64));
+        active +=
+            population(loops->look(line + (size_t)x * (size_t)order->channels,
+                                   x1 - x < 64 ? x1 - x : 64));
     return active;
 }
 
@@ -91,14 +84,6 @@ typedef struct tail {
 size_t snow_active_capacity(int64_t count, size_t pixel_bytes) {
     return (size_t)count * pixel_bytes + (size_t)(count / 64 + 2) * 9 +
            sizeof(tail) + SNOW_PIXELS_SLACK;
-}
-
-/* A bit for each byte of a word that is not 0: the highest bit of each such
- * byte is set, and all of them are moved into one byte. */
-static unsigned bytes_of(uint64_t word) {
-    const uint64_t low = 0x7f7f7f7f7f7f7f7f;
-    uint64_t high = (((word & low) + low) | word) & ~low;
-    return (unsigned)((high >> 7) * 0x0102040810204080 >> 56);
 }
 
 /* The bytes of a word that are not 0, without a branch for each; one more may
@@ -124,19 +109,16 @@ size_t snow_active_close(unsigned char *message, const uint64_t *words,
     unsigned char *out = message + (size_t)count * pixel_bytes;
     for (int64_t i = begin; i < end; i++)
         out = pack_word(out, words[i]);
-    for (int64_t i = begin; i < end; i++)
-        *out++ = (unsigned char)bytes_of(words[i]);
+    /* A bit for each byte of a word that is not 0: the highest bit of each such
+     * byte is set, and all of them are moved into one byte. */
+    const uint64_t low = 0x7f7f7f7f7f7f7f7f;
+    for (int64_t i = begin; i < end; i++) {
+        uint64_t high = (((words[i] & low) + low) | words[i]) & ~low;
+        *out++ = (unsigned char)((high >> 7) * 0x0102040810204080 >> 56);
+    }
     tail last_bytes = {(uint32_t)(first / 64 + begin), (uint32_t)(end - begin)};
     memcpy(out, &last_bytes, sizeof last_bytes);
     return (size_t)(out - message) + sizeof last_bytes;
-}
-
-/* Bytes of a packed mask of `count` words, whose list of bytes is `which`. */
-static size_t mask_bytes(const unsigned char *which, int64_t count) {
-    size_t bytes = 0;
-    for (int64_t i = 0; i < count; i++)
-        bytes += (size_t)population(which[i]);
-    return bytes;
 }
 
 /* Unpacks words, whose bytes begin at `from`; returns the number of active
@@ -179,7 +161,9 @@ bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
         return false;
     bytes -= end.words;
     const unsigned char *which = message + bytes;
-    const size_t mask = mask_bytes(which, end.words);
+    size_t mask = 0; /* bytes of the packed mask */
+    for (int64_t i = 0; i < end.words; i++)
+        mask += (size_t)population(which[i]);
     if (mask > bytes)
         return false;
     int64_t active = unpack_words(which, end.words, which - mask,

@@ -58,27 +58,20 @@ static void drop_buffers(snow_combiner *combiner) {
     combiner->shape = (snow_exchange_params){0};
 }
 
-/* Returns whether nobody reads any more what was shared. After an exchange that
- * has not ended there is nobody to wait for. */
-static bool give_back(snow_combiner *combiner) {
-    return combiner->exchange.ended && !snow_comm_broken(combiner->comm) &&
-           snow_traffic_await_returns(combiner) == SNOW_STATUS_OK;
-}
-
 void snow_combiner_free(snow_combiner *combiner) {
     if (!combiner)
         return;
-    if (combiner->lends && !give_back(combiner)) { /* others may read there */
+    /* After an exchange that has not ended there is nobody to wait for. */
+    if (combiner->lends &&
+        !(combiner->exchange.ended && !snow_comm_broken(combiner->comm) &&
+          snow_traffic_await_returns(combiner) == SNOW_STATUS_OK)) {
+        /* others may read there */
         combiner->out[0].bytes = combiner->out[1].bytes = NULL;
         combiner->lends = false; /* it stays taken */
     }
     drop_buffers(combiner);
     snow_gather_free(combiner);
     snow_release(combiner->comm->context, combiner);
-}
-
-static int64_t most(int64_t a, int64_t b) {
-    return a > b ? a : b;
 }
 
 static size_t more(size_t a, size_t b) {
@@ -95,8 +88,9 @@ static int64_t most_held(const snow_combiner *combiner, int level) {
         group = group / rounds->radices[i] > 1 ? group / rounds->radices[i] : 1;
     if (rounds->tree || level == 0)
         return snow_region_capacity(bounds, 1);
-    return most(snow_region_capacity(bounds, group),
-                snow_region_capacity(bounds, group + 1));
+    const int64_t a = snow_region_capacity(bounds, group);
+    const int64_t b = snow_region_capacity(bounds, group + 1);
+    return a > b ? a : b;
 }
 
 /* The most messages of a rank in a round (snow_rounds_capacity). */

@@ -178,14 +178,6 @@ snow_status snow_gather_reserve(snow_combiner *combiner, int width, int height,
     return SNOW_RESERVE(combiner->comm->context, state->own, 0, bytes);
 }
 
-/* Returns whether the gap before a run is shorter than the cost of the run. */
-static bool crowds(const snow_gather_state *state, const snow_pixel_run *before,
-                   const snow_pixel_run *run) {
-    int64_t gap = (int64_t)run->x - before->x - before->count;
-    return run->y == before->y &&
-           gap * (int64_t)state->pixel_bytes < SNOW_RUN_BYTES;
-}
-
 /* This rank's runs may be invalid, or its memory short, and the others do not
  * know: it continues without runs then, and fails in the end. */
 static snow_status check_runs(snow_combiner *combiner,
@@ -195,8 +187,12 @@ static snow_status check_runs(snow_combiner *combiner,
     int64_t left = all;
     bool good = count <= (uint64_t)left;
     for (size_t i = 0; i < count && good; i++) {
-        good = run_fits(state, &runs[i]) && runs[i].count <= left &&
-               !(i && crowds(state, &runs[i - 1], &runs[i]));
+        good = run_fits(state, &runs[i]) && runs[i].count <= left;
+        /* a gap is not shorter than the cost of a run */
+        if (i && runs[i].y == runs[i - 1].y)
+            good &= ((int64_t)runs[i].x - runs[i - 1].x - runs[i - 1].count) *
+                        (int64_t)state->pixel_bytes >=
+                    SNOW_RUN_BYTES;
         left -= runs[i].count;
     }
     if (good)

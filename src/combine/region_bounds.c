@@ -1,13 +1,10 @@
 /* combine/region_bounds.c - the partition of the picture into regions. */
 #include "combine/region_bounds.h"
+#include "base/minmax.h"
 
 /* Counted regions are measured up to this number, which takes a microsecond. A
  * larger number of regions is small anyway. */
 #define REGIONS_MEASURED 64
-
-static int64_t least(int64_t a, int64_t b) {
-    return a < b ? a : b;
-}
 
 void snow_region_bounds_even(snow_region_bounds *bounds, int width, int height,
                              int grain) {
@@ -74,7 +71,7 @@ int64_t snow_region_capacity(const snow_region_bounds *bounds, int regions) {
     const int64_t pixels = (int64_t)bounds->width * bounds->height;
     int64_t even = pixels / regions + 1;
     if (!bounds->counted)
-        return least(pixels, even + bounds->grain);
+        return SNOW_MIN(pixels, even + bounds->grain);
     if (regions <= REGIONS_MEASURED) {
         int64_t most = 0, first = 0;
         for (int i = 1; i <= regions; i++) {
@@ -84,5 +81,5 @@ int64_t snow_region_capacity(const snow_region_bounds *bounds, int regions) {
         }
         return most;
     }
-    return least(pixels, SNOW_IMAGE_REGION_MOST * even + 1 + bounds->grain);
+    return SNOW_MIN(pixels, SNOW_IMAGE_REGION_MOST * even + 1 + bounds->grain);
 }

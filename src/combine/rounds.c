@@ -1,6 +1,7 @@
 /* combine/rounds.c - the communication pattern of rounds.h: near-equal splits,
  * and overlaps of the regions of two divisions. */
 #include "combine/rounds.h"
+#include "base/minmax.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,24 +11,20 @@ typedef struct group {
     int start, count;
 } group;
 
-static int least(int a, int b) {
-    return a < b ? a : b;
-}
-
 /* --- splits --------------------------------------------------------------- */
 
 /* Subset i of a group split into at most `radix` near-equal ones; the first
  * ones are one larger if it does not divide evenly. */
 static group subset_of(group whole, int radix, int i) {
-    int parts = least(whole.count, radix);
+    int parts = SNOW_MIN(whole.count, radix);
     int size = whole.count / parts, larger = whole.count % parts;
-    return (group){whole.start + i * size + least(i, larger),
+    return (group){whole.start + i * size + SNOW_MIN(i, larger),
                    size + (i < larger)};
 }
 
 /* The subset of a rank position. */
 static int subset_at(group whole, int radix, int rank_position) {
-    int parts = least(whole.count, radix);
+    int parts = SNOW_MIN(whole.count, radix);
     int size = whole.count / parts, larger = whole.count % parts;
     int place = rank_position - whole.start;
     return place < larger * (size + 1)
@@ -66,10 +63,10 @@ static int region_in(const snow_rounds *rounds, int level, group whole,
     int i = subset_at(whole, radix, rank_position);
     group own = subset_of(whole, radix, i);
     int a = region_in(rounds, level - 1, own, rank_position);
-    int parts = least(whole.count, radix);
+    int parts = SNOW_MIN(whole.count, radix);
     int size = whole.count / parts, larger = whole.count % parts;
     /* Subsets before and after this one, of the two sizes. */
-    int big_before = least(i, larger), small_before = i - big_before;
+    int big_before = SNOW_MIN(i, larger), small_before = i - big_before;
     int big_after = larger - big_before - (i < larger);
     int small_after = parts - larger - small_before - (i >= larger);
     return a + big_before * regions_before(a, own.count, size + 1, true) +
@@ -113,15 +110,9 @@ size_t snow_rounds_capacity(const snow_rounds *rounds) {
     size_t capacity = 0;
     for (int i = 0; i < rounds->count; i++) /* in either list, and spare */
         capacity +=
-            2 * (size_t)(2 * least(rounds->radices[i], rounds->rank_order) + 4);
+            2 *
+            (size_t)(2 * SNOW_MIN(rounds->radices[i], rounds->rank_order) + 4);
     return capacity;
-}
-
-static int append_share(snow_rounds *rounds, int rank_position, int region,
-                        int regions) {
-    rounds->shares[rounds->share_count] =
-        (snow_share){rank_position, region, regions};
-    return ++rounds->share_count;
 }
 
 /* Appends the regions (of `to`) that region `region` of `of` overlaps, with
@@ -131,7 +122,8 @@ static void append_overlaps(snow_rounds *rounds, int region, int of, int to,
     int64_t first = (int64_t)region * to / of;
     int64_t end = ((int64_t)(region + 1) * to + of - 1) / of;
     for (int64_t t = first; t < end; t++)
-        append_share(rounds, owners[t], (int)t, to);
+        rounds->shares[rounds->share_count++] =
+            (snow_share){owners[t], (int)t, to};
 }
 
 static void fill_round(snow_rounds *rounds, int level, int *table) {
@@ -152,7 +144,8 @@ static void fill_round(snow_rounds *rounds, int level, int *table) {
                         regions_of(rounds, g), table);
     round->sends = rounds->share_count - round->first_send;
     round->first_receive = rounds->share_count;
-    for (int i = 0; i < least(g.count, radix) && round->mine.region >= 0; i++) {
+    for (int i = 0; i < SNOW_MIN(g.count, radix) && round->mine.region >= 0;
+         i++) {
         group other = subset_of(g, radix, i);
         list_owners(rounds, level, other, table);
         append_overlaps(rounds, round->mine.region, round->mine.regions,
@@ -214,21 +207,6 @@ static double round_seconds(const search *s, int left, int radix) {
     return LATENCY + OVERHEAD * messages + (start > travel ? start : travel);
 }
 
-/* Returns whether it is a product of available radices. */
-static bool divides(int left) {
-    for (int factor = 2; factor <= 16; factor++)
-        while (left % factor == 0)
-            left /= factor;
-    return left == 1;
-}
-
-/* Returns whether a round of this radix leaves subsets that still divide
- * nodes. */
-static bool keeps_nodes(const search *s, int left, int radix) {
-    return left <= s->nodes || s->nodes == 1 ||
-           (left % radix == 0 && left / radix % s->nodes == 0);
-}
-
 static void search_rounds(search *s, int left, double seconds) {
     if (seconds >= s->best || s->count == 12)
         return;
@@ -238,10 +216,17 @@ static void search_rounds(search *s, int left, double seconds) {
         memcpy(s->found->radices, s->radices, sizeof s->radices);
         return;
     }
-    const bool even = divides(left), within = s->nodes > 1 && left > s->nodes;
-    for (int radix = within ? left : least(left, RADIX_MOST); radix >= 2;
+    int rest = left; /* 1 if it is a product of available radices */
+    for (int factor = 2; factor <= 16; factor++)
+        while (rest % factor == 0)
+            rest /= factor;
+    const bool even = rest == 1, within = s->nodes > 1 && left > s->nodes;
+    for (int radix = within ? left : SNOW_MIN(left, RADIX_MOST); radix >= 2;
          radix--) {
-        if ((even && left % radix) || !keeps_nodes(s, left, radix))
+        /* subsets still divide nodes after a round of this radix */
+        const bool keeps = left <= s->nodes || s->nodes == 1 ||
+                           (left % radix == 0 && left / radix % s->nodes == 0);
+        if ((even && left % radix) || !keeps)
             continue;
         s->radices[s->count++] = radix;
         search_rounds(s, (left + radix - 1) / radix,
@@ -254,7 +239,7 @@ static void search_rounds(search *s, int left, double seconds) {
 static void repeat_radix(snow_rounds *rounds, int rank_order, int radix) {
     rounds->count = 0;
     for (int left = rank_order; left > 1; left = (left + radix - 1) / radix)
-        rounds->radices[rounds->count++] = least(radix, left);
+        rounds->radices[rounds->count++] = SNOW_MIN(radix, left);
 }
 
 void snow_rounds_choose(snow_rounds *rounds, snow_combine method, int radix,

@@ -172,11 +172,6 @@ static mailbox_slot *new_slot(mailbox_rank *own) {
     return slot;
 }
 
-static void free_slot(mailbox_rank *own, mailbox_slot *slot) {
-    *slot = (mailbox_slot){.made = slot->made, .next = own->spare};
-    own->spare = slot;
-}
-
 /* A copy of a message; NULL, with an error message, without memory. */
 static mailbox_message *new_message(mailbox_rank *own, const void *bytes,
                                     size_t count, int to, int tag) {
@@ -283,7 +278,8 @@ static snow_status deliver_message(mailbox_rank *own, snow_message *message) {
             memcpy(slot->bytes, queued_message + 1, queued_message->bytes);
         snow_release(own->mailbox->context, queued_message);
     }
-    free_slot(own, slot);
+    *slot = (mailbox_slot){.made = slot->made, .next = own->spare};
+    own->spare = slot;
     return SNOW_STATUS_OK;
 }
 

@@ -32,15 +32,6 @@ int snow_comm_ranks_per_node(const snow_comm *comm) {
 
 /* --- the memory ----------------------------------------------------------- */
 
-/* Whether a combiner of any rank has the memory: ranks may free an old one
- * before or after they plan a new one. */
-static snow_status is_taken(snow_comm *comm, bool *out) {
-    int64_t taken = comm->shared_taken != 0;
-    SNOW_TRY(snow_comm_reduce_ints(comm, &taken, 1, SNOW_REDUCE_MAX));
-    *out = taken;
-    return SNOW_STATUS_OK;
-}
-
 /* Replaces this rank's memory by more. */
 static snow_status renew(snow_comm *comm, size_t bytes) {
     comm->shared = NULL;
@@ -54,14 +45,16 @@ static snow_status renew(snow_comm *comm, size_t bytes) {
 /* A rank that has failed says so before the transport's call, in which nobody
  * watches. */
 snow_status snow_comm_take_shared(snow_comm *comm, size_t bytes, void **out) {
-    bool taken = true;
+    int64_t taken = comm->shared_taken != 0;
     *out = NULL;
     if (comm->ranks == 1 || !comm->ops.node_of)
         return SNOW_STATUS_OK;
     const snow_status counted = snow_memory_count(comm->context, bytes);
     snow_status status = snow_comm_agree_status(comm, counted);
+    /* Does a combiner of any rank have the memory?  Ranks may free an old one
+     * before or after they plan a new one. */
     if (status == SNOW_STATUS_OK)
-        status = is_taken(comm, &taken);
+        status = snow_comm_reduce_ints(comm, &taken, 1, SNOW_REDUCE_MAX);
     if (status == SNOW_STATUS_OK && !taken && bytes > comm->shared_bytes)
         status = renew(comm, bytes);
     if (status == SNOW_STATUS_OK && !taken && comm->shared) {

@@ -1,5 +1,6 @@
 /* decompose/occluded.c - see occluded.h. */
 #include "decompose/occluded.h"
+#include "base/minmax.h"
 
 #define BRANCHES SNOW_OCCLUDED_BRANCHES
 
@@ -17,14 +18,6 @@ typedef struct place {
     uint64_t key;
     int box;
 } place;
-
-/* Spreads 16 bits to every third one. */
-static uint64_t spread(uint64_t bits) {
-    bits = (bits | bits << 16) & UINT64_C(0x0000ff0000ff);
-    bits = (bits | bits << 8) & UINT64_C(0x00f00f00f00f);
-    bits = (bits | bits << 4) & UINT64_C(0x0c30c30c30c3);
-    return (bits | bits << 2) & UINT64_C(0x249249249249);
-}
 
 static void find_bounds(const snow_occluded *set, int64_t low[3],
                         int64_t high[3]) {
@@ -62,7 +55,12 @@ static int find_places(const snow_occluded *set, place *places) {
                                    ? viewer->eye[i] - (double)low[i] > size / 2
                                    : viewer->along[i] < 0;
             const double at = (falls ? size - middle : middle) / size;
-            places[full].key |= spread((uint64_t)(at * (1 << PLACE_BITS))) << i;
+            uint64_t bits = (uint64_t)(at * (1 << PLACE_BITS));
+            bits = (bits | bits << 16) & UINT64_C(0x0000ff0000ff);
+            bits = (bits | bits << 8) & UINT64_C(0x00f00f00f00f);
+            bits = (bits | bits << 4) & UINT64_C(0x0c30c30c30c3);
+            bits = (bits | bits << 2) & UINT64_C(0x249249249249);
+            places[full].key |= bits << i; /* every third bit */
         }
         full++;
     }
@@ -212,14 +210,11 @@ void snow_occluded_fill(snow_occluded *set) {
     }
 }
 
-static bool is_in(const snow_occluded *set, int position) {
-    return set->nodes[0][position / BRANCHES].end[0][position % BRANCHES] >
-           nothing;
-}
-
 bool snow_occluded_remove(snow_occluded *set, int box) {
     const int position = set->positions[box];
-    if (position < 0 || !is_in(set, position))
+    if (position < 0 ||
+        !(set->nodes[0][position / BRANCHES].end[0][position % BRANCHES] >
+          nothing))
         return false;
     change_box(set, position, NULL);
     return true;
@@ -236,22 +231,18 @@ typedef struct question {
     double end[3], first[3];
 } question;
 
-static double less(double a, double b) {
-    return a < b ? a : b;
-}
-
 /* Branches of a node that may have an answer, as bits. */
 static unsigned int answers(const snow_occluded_node *node, const question *q) {
     unsigned int bits = 0;
     double beyond[BRANCHES]; /* positive: on all axes */
     for (int i = 0; i < BRANCHES; i++) {
-        const double x =
-            less(node->end[0][i] - q->end[0], node->first[0][i] - q->first[0]);
-        const double y =
-            less(node->end[1][i] - q->end[1], node->first[1][i] - q->first[1]);
-        const double z =
-            less(node->end[2][i] - q->end[2], node->first[2][i] - q->first[2]);
-        beyond[i] = less(less(x, y), z);
+        const double x = SNOW_MIN(node->end[0][i] - q->end[0],
+                                  node->first[0][i] - q->first[0]);
+        const double y = SNOW_MIN(node->end[1][i] - q->end[1],
+                                  node->first[1][i] - q->first[1]);
+        const double z = SNOW_MIN(node->end[2][i] - q->end[2],
+                                  node->first[2][i] - q->first[2]);
+        beyond[i] = SNOW_MIN(SNOW_MIN(x, y), z);
     }
     for (int i = 0; i < BRANCHES; i++)
         bits |= (unsigned int)(beyond[i] > 0) << i;

@@ -1,5 +1,6 @@
 /* decompose/ray_grid.c - see ray_grid.h. */
 #include "decompose/ray_grid.h"
+#include "base/minmax.h"
 
 #include <assert.h>
 #include <math.h>
@@ -75,14 +76,6 @@ int64_t snow_ray_grid_place(const snow_ray_grid *g, int axis, int64_t voxel) {
 
 /* --- what is drawn -------------------------------------------------------- */
 
-/* How many of the volume's voxels in cell n along axis i are counted. */
-static double counted(const snow_ray_grid *g, int i, int64_t n) {
-    const int64_t step = g->view.axes[i] == 2 ? g->step : 1;
-    int64_t first = n * g->cell[i], end = first + g->cell[i];
-    end = end < g->dims[i] ? end : g->dims[i];
-    return (double)((end + step - 1) / step - (first + step - 1) / step);
-}
-
 static void average(snow_ray_walk *w) {
     const snow_ray_grid *g = w->grid;
     const int64_t *sum = g->sums;
@@ -90,8 +83,17 @@ static void average(snow_ray_walk *w) {
     for (int64_t s = 0; s < g->cells[2]; s++)
         for (int64_t v = 0; v < g->cells[1]; v++)
             for (int64_t u = 0; u < g->cells[0]; u++, sum++) {
-                const double voxels =
-                    counted(g, 0, u) * counted(g, 1, v) * counted(g, 2, s);
+                /* How many of the volume's voxels in the cell are counted. */
+                const int64_t at[3] = {u, v, s};
+                double voxels = 1;
+                for (int i = 0; i < 3; i++) {
+                    const int64_t step = g->view.axes[i] == 2 ? g->step : 1;
+                    const int64_t first = at[i] * g->cell[i];
+                    const int64_t end =
+                        SNOW_MIN(first + g->cell[i], g->dims[i]);
+                    voxels *= (double)((end + step - 1) / step -
+                                       (first + step - 1) / step);
+                }
                 const double part = voxels > 0 ? 1 / voxels : 0;
                 *drawn++ = (float)((double)(*sum >> 32) * part);
                 *closing++ = (float)((double)(*sum & INT64_C(0xffffffff)) *
@@ -121,10 +123,6 @@ typedef struct work {
     float all, drawn;
 } work;
 
-static float open_of(float closed) {
-    return fminf(2 * (1 - closed), 1);
-}
-
 /* `count` cells of a row, which share spans: as much of a span is drawn as of
  * its cell that is most open. */
 static void pass_cells(const snow_ray_walk *w, size_t at, float slices,
@@ -137,7 +135,8 @@ static void pass_cells(const snow_ray_walk *w, size_t at, float slices,
         const float here = w->drawn[at + (size_t)u];
         const float closing = w->closing[at + (size_t)u] * slices;
         const float after = fminf(closed[u] + closing, 1);
-        const float open = (open_of(closed[u]) + open_of(after)) / 2;
+        const float open =
+            (fminf(2 * (1 - closed[u]), 1) + fminf(2 * (1 - after), 1)) / 2;
         closed[u] = after;
         if (here == 0)
             continue;

@@ -86,16 +86,14 @@ snow_status snow_voxels_new(snow_comm *comm, snow_voxels **out) {
     return SNOW_STATUS_OK;
 }
 
-static void free_traffic(snow_context *context, traffic *t) {
-    snow_release(context, t->portions);
-    snow_release(context, t->block_messages);
-    snow_release(context, t->buffer);
-}
-
 void snow_voxels_clear(snow_voxels *voxels) {
-    free_traffic(voxels->context, &voxels->sent);
-    free_traffic(voxels->context, &voxels->received);
-    free_traffic(voxels->context, &voxels->kept);
+    const traffic *const all[] = {&voxels->sent, &voxels->received,
+                                  &voxels->kept};
+    for (int n = 0; n < 3; n++) {
+        snow_release(voxels->context, all[n]->portions);
+        snow_release(voxels->context, all[n]->block_messages);
+        snow_release(voxels->context, all[n]->buffer);
+    }
     snow_release(voxels->context, voxels->messages);
     *voxels = (snow_voxels){.comm = voxels->comm, .context = voxels->context};
 }

@@ -18,10 +18,6 @@ static size_t segments_of(const snow_sparse *s) {
     return (size_t)((s->columns + SEGMENT - 1) / SEGMENT);
 }
 
-static void store_indr(unsigned char *ea, size_t index, uint32_t value) {
-    memcpy(ea + index * sizeof value, &value, sizeof value);
-}
-
 /* INDR[index] of the slice at `ea`. */
 static uint32_t load_indr(const unsigned char *ea, size_t index) {
     uint32_t value;
@@ -34,16 +30,11 @@ static snow_status crs_begin_slice(snow_sparse *s) {
     return snow_sparse_grow_ea(s, entries * sizeof(uint32_t));
 }
 
-static size_t count_set(const uint64_t *mask, size_t words) {
-    size_t count = 0;
-    for (size_t w = 0; w < words; w++)
-        count += (size_t)__builtin_popcountll(mask[w]);
-    return count;
-}
-
 static snow_status crs_add_row(snow_sparse *s, const uint64_t *mask) {
     size_t words = snow_mask_words(s), segments = segments_of(s);
-    size_t at = s->ea_bytes, count = count_set(mask, words);
+    size_t at = s->ea_bytes, count = 0;
+    for (size_t w = 0; w < words; w++)
+        count += (size_t)__builtin_popcountll(mask[w]);
     SNOW_TRY(snow_sparse_grow_ea(s, count * sizeof(uint16_t)));
     unsigned char *col = s->ea + at, *slice = s->ea + s->pa[s->filled].ea;
     unsigned char *indr = slice + (size_t)s->row * segments * sizeof(uint32_t);
@@ -57,7 +48,8 @@ static snow_status crs_add_row(snow_sparse *s, const uint64_t *mask) {
             voxels++;
         }
         if (w % SEGMENT_WORDS == SEGMENT_WORDS - 1 || w == words - 1)
-            store_indr(indr, w / SEGMENT_WORDS + 1, voxels);
+            memcpy(indr + (w / SEGMENT_WORDS + 1) * sizeof voxels, &voxels,
+                   sizeof voxels);
     }
     return SNOW_STATUS_OK;
 }

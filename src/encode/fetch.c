@@ -59,36 +59,8 @@ void snow_fetch_begin(snow_fetch *f, const snow_fetch_params *params,
 
 /* --- slices along x ------------------------------------------------------- */
 
-/* Transposes `lines` lines of `count` voxels into the block, for any number. */
-static void transpose_few(const snow_fetch *f, const unsigned char *in,
-                          size_t lines, size_t count, unsigned char *out) {
-    for (size_t n = 0; n < count; n++)
-        for (size_t u = 0; u < lines; u++)
-            memcpy(out + n * f->slice_pitch + u * f->size,
-                   in + u * f->column_step + n * f->size, f->size);
-}
-
-/* Transposes a tile at an edge: nothing is read beyond its lines, and they are
- * padded. The block has room for a whole tile. */
-static void transpose_edge(const snow_fetch *f, const unsigned char *in,
-                           size_t lines, size_t count, unsigned char *out) {
-    unsigned char tile[TILE * LINE] = {0};
-    for (size_t u = 0; u < lines; u++)
-        memcpy(tile + u * LINE, in + u * f->column_step, count * f->size);
-    f->transpose(tile, LINE, out, f->slice_pitch, tile);
-}
-
-/* The tile after that of columns `u` on of the row at `in`: in the same row, or
- * the first of the next. */
-static const unsigned char *
-next_tile(const snow_fetch *f, const unsigned char *in, size_t row, size_t u) {
-    if (u + 2 * TILE <= f->columns)
-        return in + (u + TILE) * f->column_step;
-    return row + 1 < f->rows && TILE <= f->columns ? in + f->row_step : in;
-}
-
 /* Copies row `row` of `count` slices from `slice` on, at most one cache line,
- * into `out`. */
+ * into `out`, tile by tile.  The block has room for a whole tile. */
 static void fill_row(const snow_fetch *f, int64_t slice, size_t row,
                      size_t count, unsigned char *out) {
     const unsigned char *in =
@@ -98,13 +70,26 @@ static void fill_row(const snow_fetch *f, int64_t slice, size_t row,
         size_t lines = f->columns - u < TILE ? f->columns - u : TILE;
         const unsigned char *from = in + u * f->column_step;
         unsigned char *to = out + u * f->size;
+        /* The tile after that of columns `u` on: in the same row, or the first
+         * of the next. */
+        const unsigned char *next =
+            u + 2 * TILE <= f->columns ? from + TILE * f->column_step
+            : row + 1 < f->rows && TILE <= f->columns ? in + f->row_step
+                                                      : in;
         if (lines == TILE && count * f->size == LINE)
-            f->transpose(from, f->column_step, to, f->slice_pitch,
-                         next_tile(f, in, row, u));
-        else if (count < TILE_WORTH)
-            transpose_few(f, from, lines, count, to);
-        else
-            transpose_edge(f, from, lines, count, to);
+            f->transpose(from, f->column_step, to, f->slice_pitch, next);
+        else if (count < TILE_WORTH) {
+            for (size_t n = 0; n < count; n++)
+                for (size_t k = 0; k < lines; k++)
+                    memcpy(to + n * f->slice_pitch + k * f->size,
+                           from + k * f->column_step + n * f->size, f->size);
+        } else { /* nothing is read beyond the lines, and they are padded */
+            unsigned char tile[TILE * LINE] = {0};
+            for (size_t k = 0; k < lines; k++)
+                memcpy(tile + k * LINE, from + k * f->column_step,
+                       count * f->size);
+            f->transpose(tile, LINE, to, f->slice_pitch, tile);
+        }
     }
 }
 

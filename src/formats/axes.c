@@ -2,14 +2,6 @@
  */
 #include "formats/axes.h"
 
-/* Pictures of two axes, one of them time, stay pictures. */
-static int find_time(int rank, const snow_axis_hint *hints) {
-    for (int i = rank - 1; i >= 0 && rank > 2; i--)
-        if (hints[i].time || (hints[i].duration && i == rank - 1))
-            return i;
-    return -1;
-}
-
 /* The most components of a voxel, a tensor's, that leave a picture of three
  * axes; more entries are slices. */
 #define MOST_OF_PICTURE 9
@@ -32,7 +24,11 @@ bool snow_axes_assign(int rank, const int64_t sizes[SNOW_MOST_AXES],
                       const snow_axis_hint hints[SNOW_MOST_AXES],
                       snow_axes *out) {
     int left[SNOW_MOST_AXES], count = 0;
-    *out = (snow_axes){{-1, -1, -1}, find_time(rank, hints), -1, false};
+    *out = (snow_axes){{-1, -1, -1}, -1, -1, false};
+    /* Pictures of two axes, one of them time, stay pictures. */
+    for (int i = rank - 1; i >= 0 && rank > 2 && out->time < 0; i--)
+        if (hints[i].time || (hints[i].duration && i == rank - 1))
+            out->time = i;
     for (int i = 0; i < rank; i++)
         if (i != out->time)
             left[count++] = i;

@@ -59,13 +59,6 @@ static double metres(const char *unit) {
     return 0;
 }
 
-/* How many of the other unit one is; 0 if they cannot be compared. */
-static double ratio(const char *unit, const char *other) {
-    if (!strcmp(unit, other))
-        return 1;
-    return metres(other) > 0 ? metres(unit) / metres(other) : 0;
-}
-
 snow_axis_hint snow_cf_hint(const cf_words *words) {
     static const char *const spaces[] = {"x", "y", "z", NULL};
     static const char *const lines[] = {"x", "lon", "longitude", "rlon", NULL};
@@ -141,7 +134,12 @@ static void place_axis(snow_context *context, const cf_axis axes[3], int i,
                        snow_volume_info *info) {
     const cf_axis *x = &axes[0], *axis = &axes[i];
     double usual = x->given ? fabs(x->step) : 1;
-    const double times = axis->given ? ratio(axis->unit, x->unit) : 0;
+    /* How many units of x one is; 0 if they cannot be compared. */
+    const double times = !axis->given                   ? 0
+                         : !strcmp(axis->unit, x->unit) ? 1
+                         : metres(x->unit) > 0
+                             ? metres(axis->unit) / metres(x->unit)
+                             : 0;
     const bool same = times > 0;
     const double up = axis->down ? -1 : 1;
     info->matrix[i][i] =
@@ -212,21 +210,6 @@ void snow_cf_apply(const cf_values *values, snow_volume_info *info) {
     info->intercept = values->offset;
 }
 
-static bool is_fill(const cf_values *values, double value) {
-    for (int i = 0; i < values->fills; i++)
-        if (value == values->fill[i])
-            return true;
-    return false;
-}
-
-/* Stores one voxel of a type that has NaN. */
-static void put_value(snow_type type, void *voxels, int64_t i, double value) {
-    if (type == SNOW_TYPE_FLOAT32)
-        ((float *)voxels)[i] = (float)value;
-    else
-        ((double *)voxels)[i] = value;
-}
-
 /* Floats are compared as they were rounded: a fill value of 1e20 differs from
  * its float. */
 static void blank(const cf_values *values, const snow_volume *from,
@@ -238,10 +221,17 @@ static void blank(const cf_values *values, const snow_volume *from,
         narrow.fill[i] = (double)(float)narrow.fill[i];
     for (int64_t i = 0; i < dims[0] * dims[1] * dims[2]; i++) {
         double value = snow_volume_native(from, i);
-        if (is_fill(&narrow, value))
-            put_value(to->info.type, to->owned, i, NAN);
-        else if (to != from)
-            put_value(to->info.type, to->owned, i, value);
+        bool fill = false;
+        for (int n = 0; n < narrow.fills && !fill; n++)
+            fill = value == narrow.fill[n];
+        if (fill)
+            value = NAN;
+        if (!fill && to == from)
+            continue;
+        if (to->info.type == SNOW_TYPE_FLOAT32)
+            ((float *)to->owned)[i] = (float)value;
+        else
+            ((double *)to->owned)[i] = value;
     }
 }
 

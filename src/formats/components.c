@@ -158,13 +158,6 @@ snow_status snow_volume_pick_channel(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* Vectors are shown by their length, as ParaView does. Four components may be
- * anything, and whole numbers are most often colours. */
-static bool is_vector(int64_t count, snow_type type) {
-    return (count == 2 || count == 3) &&
-           (type == SNOW_TYPE_FLOAT32 || type == SNOW_TYPE_FLOAT64);
-}
-
 snow_status snow_volume_pick_component(snow_context *context,
                                        const snow_volume_options *options,
                                        int64_t count, snow_volume_info *info,
@@ -175,7 +168,12 @@ snow_status snow_volume_pick_component(snow_context *context,
         return refuse_magnitude(context, count);
     bool usual =
         !options->component && !options->channel && !options->channel_given;
-    info->magnitude = named || (usual && is_vector(count, info->type));
+    /* Vectors are shown by their length, as ParaView does. Four components may
+     * be anything, and whole numbers are most often colours. */
+    const bool vector =
+        (count == 2 || count == 3) &&
+        (info->type == SNOW_TYPE_FLOAT32 || info->type == SNOW_TYPE_FLOAT64);
+    info->magnitude = named || (usual && vector);
     if (!info->magnitude)
         return snow_volume_pick_channel(context, options, count, info, out);
     *out = 0;

@@ -192,15 +192,12 @@ static snow_status read_mask(const opening *o, const snow_volume *volume,
     return status;
 }
 
-/* Returns whether a mask or planes leave something out, not labels alone. */
-static bool is_cut(const opening *o) {
-    static const double none[SNOW_CLIPS_MAX][4];
-    return o->mask_path || memcmp(o->clip, none, sizeof none) != 0;
-}
-
 static snow_status open_both(opening *o, snow_volume_info *info,
                              snow_volume **out) {
+    static const double none[SNOW_CLIPS_MAX][4];
     const bool picks = o->count && !o->mask_path;
+    /* A mask or planes leave something out, not labels alone. */
+    const bool cut = o->mask_path || memcmp(o->clip, none, sizeof none) != 0;
     snow_volume_info whole;
     snow_volume *volume;
     if (o->mask_path)
@@ -209,7 +206,7 @@ static snow_status open_both(opening *o, snow_volume_info *info,
         SNOW_TRY(o->open(o->context, o->path, &o->options, info, NULL));
         if (picks) /* of the numbers that are there before a cut */
             SNOW_TRY(snow_labels_check(o->context, info));
-        if (is_cut(o))
+        if (cut)
             snow_mask_info(info);
         return SNOW_STATUS_OK;
     }
@@ -223,7 +220,7 @@ static snow_status open_both(opening *o, snow_volume_info *info,
         snow_notify(o->context,
                     "--labels: no voxel has such a label; info lists those "
                     "that there are");
-    if (status == SNOW_STATUS_OK && !is_cut(o)) {
+    if (status == SNOW_STATUS_OK && !cut) {
         *out = volume;
         return SNOW_STATUS_OK;
     }

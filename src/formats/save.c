@@ -23,15 +23,6 @@ static const struct {
 };
 #define ENDING_COUNT (sizeof endings / sizeof *endings)
 
-/* Fills an open writer. */
-static snow_status write_volume(const snow_volume *volume, const char *path,
-                                const snow_format *format, bool packed,
-                                snow_writer *writer) {
-    if (packed)
-        SNOW_TRY(snow_writer_pack(writer));
-    return format->write(volume, path, writer);
-}
-
 const char *snow_volume_format_suffix(size_t index) {
     return index < ENDING_COUNT ? endings[index].suffix : NULL;
 }
@@ -62,9 +53,12 @@ snow_status snow_volume_save(const snow_volume *volume, const char *path,
     snow_monitor monitor;
     snow_monitor_begin(volume->context, &monitor, NULL, NULL);
     monitor.last = SNOW_STAGE_WRITE;
-    snow_status status =
-        snow_monitor_end(&monitor, write_volume(volume, path, endings[i].format,
-                                                endings[i].packed, writer));
+    snow_status status = SNOW_STATUS_OK;
+    if (endings[i].packed)
+        status = snow_writer_pack(writer);
+    if (status == SNOW_STATUS_OK)
+        status = endings[i].format->write(volume, path, writer);
+    status = snow_monitor_end(&monitor, status);
     if (status != SNOW_STATUS_OK) {
         snow_writer_abandon(writer);
         return status;

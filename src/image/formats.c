@@ -199,17 +199,15 @@ snow_status snow_image_save(const snow_image *image, const char *path,
 
 /* The writer itself knows best what it can write, so one is opened and aborted.
  * Standard output always exists and must not be written to here. */
-/* Who reads a pipe takes the end of this check for the end of the picture. */
-static bool is_pipe(const char *path) {
-    struct stat here;
-    return stat(path, &here) == 0 && S_ISFIFO(here.st_mode);
-}
-
 snow_status snow_image_check_path(snow_context *context, const char *path,
                                   bool overwrite) {
     const snow_image_format *format = NULL;
     SNOW_TRY(choose_format(context, path, &format));
-    if (strcmp(path, "-") == 0 || is_pipe(path))
+    /* Who reads a pipe takes the end of this check for the end of the
+     * picture. */
+    struct stat here;
+    if (strcmp(path, "-") == 0 ||
+        (stat(path, &here) == 0 && S_ISFIFO(here.st_mode)))
         return SNOW_STATUS_OK;
     snow_writer *writer = NULL;
     SNOW_TRY(snow_writer_open(context, path, overwrite, &writer));

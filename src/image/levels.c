@@ -43,11 +43,6 @@ void snow_levels_end(snow_levels *levels) {
     snow_release(context, levels->row);
 }
 
-/* Dark letters are read better on these: by the luma of BT.709. */
-static bool is_light(const double *b) {
-    return b && 0.2126 * b[0] + 0.7152 * b[1] + 0.0722 * b[2] > 0.5;
-}
-
 void snow_image_draw_some(const snow_image *image, const snow_overlay *overlay,
                           const double *background, int y, int x, int count,
                           int channels, float *out) {
@@ -58,9 +53,11 @@ void snow_image_draw_some(const snow_image *image, const snow_overlay *overlay,
     else
         for (int i = 0; i < count; i++)
             snow_image_rgba(image, first + (size_t)i, out + 4 * i);
+    /* Dark letters are read better on light, by the luma of BT.709. */
+    const double *b = background;
+    const bool light = b && 0.2126 * b[0] + 0.7152 * b[1] + 0.0722 * b[2] > 0.5;
     if (overlay)
-        snow_overlay_draw(overlay, is_light(background), y, x, count, channels,
-                          out);
+        snow_overlay_draw(overlay, light, y, x, count, channels, out);
 }
 
 const unsigned char *snow_levels_row(snow_levels *l, int y) {

@@ -37,11 +37,6 @@ static snow_status write_npy(const snow_image *image,
     return snow_image_write_floats(image, channels, false, writer);
 }
 
-static snow_status fail_npy(snow_source *source, const char *reason) {
-    return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
-                     "%s: %s", snow_source_name(source), reason);
-}
-
 /* Each refusal names the NumPy call that makes a readable file. */
 static snow_status read_npy(snow_source *source, snow_image **out) {
     npy_header header;
@@ -56,17 +51,19 @@ static snow_status read_npy(snow_source *source, snow_image **out) {
     layout.big_endian = header.type[0] == '>';
     layout.sample_bytes = known ? header.type[2] - '0' : 0;
     if (!known)
-        return fail_npy(source, "the array is not float32 or float64; save it "
-                                "with .astype('float32')");
+        return snow_npy_fail(source,
+                             "the array is not float32 or float64; save it "
+                             "with .astype('float32')");
     if (header.fortran_order)
-        return fail_npy(source, "the array is in Fortran order; save it with "
-                                "numpy.ascontiguousarray");
+        return snow_npy_fail(source,
+                             "the array is in Fortran order; save it with "
+                             "numpy.ascontiguousarray");
     bool has_channels = header.axes == 3;
     if ((header.axes != 2 && !has_channels) ||
         (has_channels && (header.shape[2] < 1 || header.shape[2] > 4)))
-        return fail_npy(source,
-                        "the array does not have the shape of a picture; "
-                        "it must be (h, w) or (h, w, 1 to 4)");
+        return snow_npy_fail(source,
+                             "the array does not have the shape of a picture; "
+                             "it must be (h, w) or (h, w, 1 to 4)");
     if (has_channels)
         layout.channels = (int)header.shape[2];
     return snow_image_read_floats(source, header.shape[1], header.shape[0],

@@ -136,13 +136,6 @@ snow_status snow_insitu_plan_cells(snow_insitu *insitu,
 
 /* --- values --------------------------------------------------------------- */
 
-/* Room for the values of blocks. */
-static snow_status reserve_values(snow_insitu *insitu, snow_level_blocks *list,
-                                  size_t value) {
-    return snow_context_reserve(insitu->context, &list->values, 0,
-                                (uint64_t)list->cells, value);
-}
-
 /* A brick of this rank, whose voxels are its cells. */
 static snow_brick brick_of_cells(const snow_insitu *insitu,
                                  const snow_level_brick *of) {
@@ -268,9 +261,11 @@ static snow_status refine_blocks(snow_insitu *insitu, size_t value) {
 
 snow_status snow_insitu_move_cells(snow_insitu *insitu, size_t value) {
     snow_insitu_levels *levels = &insitu->levels;
-    snow_status status = reserve_values(insitu, &levels->sent, value);
-    if (status == SNOW_STATUS_OK)
-        status = reserve_values(insitu, &levels->received, value);
+    snow_level_blocks *const lists[2] = {&levels->sent, &levels->received};
+    snow_status status = SNOW_STATUS_OK;
+    for (int i = 0; i < 2 && status == SNOW_STATUS_OK; i++)
+        status = snow_context_reserve(insitu->context, &lists[i]->values, 0,
+                                      (uint64_t)lists[i]->cells, value);
     INSITU_TRY(snow_comm_agree_status(insitu->comm, status));
     pack_blocks(insitu, value);
     INSITU_TRY(snow_voxels_move(insitu->voxels, levels->moved, value,

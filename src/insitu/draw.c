@@ -109,13 +109,6 @@ snow_status snow_insitu_find_values(snow_insitu *insitu, double ends[2]) {
  * choose it anew. */
 #define BEYOND 0.01
 
-static bool has_grown(const snow_insitu *insitu, const double ends[2]) {
-    const double *seen = insitu->seen;
-    double capacity = BEYOND * (seen[1] - seen[0]);
-    return !(ends[0] >= seen[0] - capacity && ends[1] <= seen[1] + capacity) &&
-           ends[0] <= ends[1];
-}
-
 static void take_look(snow_insitu *insitu, snow_transfer *now) {
     snow_transfer_free(insitu->transfer);
     insitu->transfer = now;
@@ -186,6 +179,7 @@ static snow_status choose_look(snow_insitu *insitu) {
     double start = snow_comm_seconds(insitu->comm);
     double *seen = insitu->seen, *ends = insitu->ends;
     const bool spread = is_spread(&insitu->look.look);
+    const double capacity = BEYOND * (seen[1] - seen[0]);
     const bool labels =
         insitu->transfer && snow_transfer_label(insitu->transfer, 0);
     insitu->knows_ends = spread && !labels;
@@ -201,7 +195,8 @@ static snow_status choose_look(snow_insitu *insitu) {
         memcpy(seen, ends, sizeof insitu->ends);
     } else if (labels) {
         INSITU_TRY(learn_labels(insitu));
-    } else if (has_grown(insitu, ends)) {
+    } else if (ends[0] <= ends[1] && !(ends[0] >= seen[0] - capacity &&
+                                       ends[1] <= seen[1] + capacity)) {
         const bool had_range = seen[0] < seen[1];
         INSITU_TRY(widen_look(insitu, had_range));
         seen[0] = had_range ? fmin(seen[0], ends[0]) : ends[0];

@@ -94,19 +94,17 @@ static snow_box cut_equal(const int64_t dims[3], int ranks, int rank) {
     return box;
 }
 
-static snow_box cut_slab(const int64_t dims[3], int axis, int ranks, int rank) {
-    snow_box box = {{0, 0, 0}, {dims[0], dims[1], dims[2]}};
-    snow_ranks_slab(dims[axis], ranks, rank, &box.first[axis],
-                    &box.count[axis]);
-    return box;
-}
-
 static snow_box recut_box(const snow_insitu *insitu,
                           const snow_insitu_layout *l, int rank) {
     const int64_t *dims = insitu->whole.dims;
     const int ranks = snow_comm_size(insitu->comm);
-    return l->recut_axis >= 0 ? cut_slab(dims, l->recut_axis, ranks, rank)
-                              : cut_equal(dims, ranks, rank);
+    const int axis = l->recut_axis;
+    if (axis < 0)
+        return cut_equal(dims, ranks, rank);
+    snow_box slab = {{0, 0, 0}, {dims[0], dims[1], dims[2]}};
+    snow_ranks_slab(dims[axis], ranks, rank, &slab.first[axis],
+                    &slab.count[axis]);
+    return slab;
 }
 
 snow_box snow_insitu_recut_box(const snow_insitu *insitu,

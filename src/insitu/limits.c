@@ -43,13 +43,6 @@ static void spare_seconds(snow_insitu *insitu, double seconds) {
         insitu->limit_seconds, (long long)insitu->to_skip);
 }
 
-/* What the rung above would take now. */
-static double expect_above(const snow_insitu *insitu, double seconds) {
-    double above = insitu->cost[insitu->lowering - 1];
-    double here = insitu->cost[insitu->lowering];
-    return here > 0 ? seconds * above / here : seconds;
-}
-
 void snow_insitu_steer(snow_insitu *insitu, double seconds) {
     snow_degradation at = insitu->lowering;
     if (insitu->limit_seconds <= 0 || at != insitu->layout.lowering)
@@ -61,8 +54,15 @@ void snow_insitu_steer(snow_insitu *insitu, double seconds) {
         if (at < SNOW_DEGRADATION_QUARTER)
             insitu->cost[at + 1] = 0;
         spare_seconds(insitu, seconds);
-    } else if (at != SNOW_DEGRADATION_NONE &&
-               expect_above(insitu, seconds) < SPARE * insitu->limit_seconds) {
+        return;
+    }
+    if (at == SNOW_DEGRADATION_NONE)
+        return;
+    /* What the rung above would take now. */
+    const double above = insitu->cost[at] > 0
+                             ? seconds * insitu->cost[at - 1] / insitu->cost[at]
+                             : seconds;
+    if (above < SPARE * insitu->limit_seconds) {
         insitu->lowering = (snow_degradation)(at - 1);
         snow_insitu_report(insitu, "pictures are made %s again",
                            degradation_name(insitu->lowering));
@@ -98,20 +98,16 @@ snow_status snow_insitu_end_limit(snow_insitu *insitu, snow_status status) {
     return SNOW_STATUS_OK;
 }
 
-static int shrink(int side, snow_degradation lowering) {
-    int by = lowering == SNOW_DEGRADATION_HALF      ? 2
-             : lowering == SNOW_DEGRADATION_QUARTER ? 4
-                                                    : 1;
-    return (side + by - 1) / by;
-}
-
 void snow_insitu_lowered(const snow_insitu *insitu, snow_view *view,
                          snow_settings *settings) {
     snow_degradation lowering = insitu->layout.lowering;
     *view = snow_insitu_view(insitu);
     *settings = insitu->settings;
-    view->width = shrink(view->width, lowering);
-    view->height = shrink(view->height, lowering);
+    const int by = lowering == SNOW_DEGRADATION_HALF      ? 2
+                   : lowering == SNOW_DEGRADATION_QUARTER ? 4
+                                                          : 1;
+    view->width = (view->width + by - 1) / by;
+    view->height = (view->height + by - 1) / by;
     if (lowering != SNOW_DEGRADATION_NONE)
         settings->quality = SNOW_QUALITY_DRAFT;
 }

@@ -50,14 +50,6 @@ static snow_status keep_picture(snow_insitu *insitu,
     return SNOW_STATUS_OK;
 }
 
-static snow_status keep_ranks(snow_insitu *insitu,
-                              const snow_ranks_options *how) {
-    snow_ranks_options known;
-    INSITU_TRY(INSITU_READ(insitu, snow_ranks_options, how, &known));
-    insitu->how = known;
-    return SNOW_STATUS_OK;
-}
-
 static snow_status keep_work(snow_insitu *insitu,
                              const snow_insitu_work *given) {
     snow_insitu_work work;
@@ -134,8 +126,10 @@ snow_status snow_insitu_set(snow_insitu *insitu,
         INSITU_TRY(keep_clip(insitu, s.clip, s.clip_count));
     if (s.annotations)
         INSITU_TRY(keep_annotations(insitu, s.annotations));
+    snow_ranks_options how = insitu->how;
     if (s.ranks)
-        INSITU_TRY(keep_ranks(insitu, s.ranks));
+        INSITU_TRY(INSITU_READ(insitu, snow_ranks_options, s.ranks, &how));
+    insitu->how = how;
     if (s.work)
         INSITU_TRY(keep_work(insitu, s.work));
     return s.limits ? keep_limits(insitu, s.limits) : SNOW_STATUS_OK;

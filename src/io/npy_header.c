@@ -122,7 +122,7 @@ static bool parse_header(const char *text, npy_header *header) {
     return !*text && header->keys == KEY_ALL;
 }
 
-static snow_status fail_npy(snow_source *source, const char *reason) {
+snow_status snow_npy_fail(snow_source *source, const char *reason) {
     return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
                      "%s: %s", snow_source_name(source), reason);
 }
@@ -133,26 +133,27 @@ snow_status snow_npy_read_header(snow_source *source, npy_header *header) {
     SNOW_TRY(snow_source_read_all(source, start, 10, "the NPY header"));
     size_t length = start[8] | (size_t)start[9] << 8;
     if (!snow_npy_probe(start, sizeof start))
-        return fail_npy(
+        return snow_npy_fail(
             source,
             "is not an NPY file, despite its name; write it with numpy.save");
     if (start[6] < 1 || start[6] > 3)
-        return fail_npy(source,
-                        "unknown NPY version: 1 to 3 are supported; save "
-                        "it again with numpy.save");
+        return snow_npy_fail(source,
+                             "unknown NPY version: 1 to 3 are supported; save "
+                             "it again with numpy.save");
     if (start[6] > 1) {
         SNOW_TRY(snow_source_read_all(source, start + 10, 2, "the NPY header"));
         length |= (size_t)start[10] << 16 | (size_t)start[11] << 24;
     }
     if (length > HEADER_BYTES)
-        return fail_npy(source, "the NPY header is too long for a plain array; "
-                                "save an array of one number type");
+        return snow_npy_fail(source,
+                             "the NPY header is too long for a plain array; "
+                             "save an array of one number type");
     SNOW_TRY(snow_source_read_all(source, text, length, "the NPY header"));
     text[length] = '\0';
     *header = (npy_header){0};
     if (strlen(text) != length || !parse_header(text, header))
-        return fail_npy(source,
-                        "the NPY header is damaged, or of an array with "
-                        "named fields; save a plain array of float32");
+        return snow_npy_fail(source,
+                             "the NPY header is damaged, or of an array with "
+                             "named fields; save a plain array of float32");
     return SNOW_STATUS_OK;
 }

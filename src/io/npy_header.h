@@ -26,6 +26,9 @@ typedef struct npy_header {
     unsigned keys;
 } npy_header;
 
+/* Refuses the file; returns SNOW_STATUS_BAD_INPUT. */
+snow_status snow_npy_fail(snow_source *source, const char *reason);
+
 bool snow_npy_probe(const unsigned char *bytes, size_t size);
 
 /* Reads the file up to the first value. Errors: SNOW_STATUS_BAD_INPUT. */

@@ -141,15 +141,6 @@ static snow_status fail_existing(const snow_output_file *file) {
                      file->given);
 }
 
-/* For a file that replaces another: it gets the permissions of that one, before
- * its first byte. File systems without permissions refuse, which does no harm.
- * The set-user and set-group bits are not for new contents. */
-static snow_status open_successor(snow_output_file *file, mode_t mode) {
-    SNOW_TRY(open_temporary(file));
-    (void)fchmod(file->descriptor, mode & (S_IRWXU | S_IRWXG | S_IRWXO));
-    return SNOW_STATUS_OK;
-}
-
 /* Opens the output for the path, whatever exists there now. */
 static snow_status open_target(snow_output_file *file) {
     snow_context *context = file->context;
@@ -170,9 +161,17 @@ static snow_status open_target(snow_output_file *file) {
         return snow_fail(context, SNOW_STATUS_BAD_OUTPUT,
                          "%s: is a folder; give the name of a file in it",
                          file->given);
-    if (S_ISREG(here.st_mode))
-        return file->overwrite ? open_successor(file, here.st_mode)
-                               : fail_existing(file);
+    /* A file that replaces another gets the permissions of that one, before its
+     * first byte. File systems without permissions refuse, which does no harm.
+     * The set-user and set-group bits are not for new contents. */
+    if (S_ISREG(here.st_mode)) {
+        if (!file->overwrite)
+            return fail_existing(file);
+        SNOW_TRY(open_temporary(file));
+        (void)fchmod(file->descriptor,
+                     here.st_mode & (S_IRWXU | S_IRWXG | S_IRWXO));
+        return SNOW_STATUS_OK;
+    }
     file->descriptor = open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC);
     return file->descriptor >= 0
                ? SNOW_STATUS_OK

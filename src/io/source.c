@@ -83,13 +83,6 @@ static bool pass_by(snow_filter_stage *filter, uint64_t size) {
     return true;
 }
 
-/* Returns whether reading what is skipped, with what follows it, costs more
- * than a jump: it is beyond the horizon, or fills a buffer. */
-static bool worth_a_jump(const snow_filter_stage *filter, uint64_t size) {
-    return size >= SNOW_FILTER_BYTES || filter->taken >= filter->horizon ||
-           size >= filter->horizon - filter->taken;
-}
-
 snow_status snow_source_skip(snow_source *source, uint64_t size,
                              const char *what) {
     snow_filter_stage *top = source->top;
@@ -99,7 +92,12 @@ snow_status snow_source_skip(snow_source *source, uint64_t size,
             count = size;
         snow_filter_stage_drop(top, (size_t)count);
         size -= count;
-        if (!size || (worth_a_jump(top, size) && pass_by(top, size)))
+        /* Reading what is skipped, with what follows it, may cost more than a
+         * jump: it is beyond the horizon, or fills a buffer. */
+        const bool jumps = size >= SNOW_FILTER_BYTES ||
+                           top->taken >= top->horizon ||
+                           size >= top->horizon - top->taken;
+        if (!size || (jumps && pass_by(top, size)))
             return SNOW_STATUS_OK;
         SNOW_TRY(snow_filter_stage_fill(top, 1));
         if (top->begin == top->end)

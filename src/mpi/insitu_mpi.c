@@ -2,14 +2,6 @@
  * combines a few calls of snowglass/insitu.h. */
 #include <snowglass/mpi.h>
 
-/* Whether all ranks of the group succeeded. */
-static int all_are(MPI_Comm group, int mine) {
-    int all = 0;
-    return MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, group) ==
-               MPI_SUCCESS &&
-           all;
-}
-
 snow_status snow_insitu_new_mpi(snow_context *context, MPI_Comm group,
                                 snow_insitu **out) {
     snow_context *own = NULL;
@@ -17,7 +9,10 @@ snow_status snow_insitu_new_mpi(snow_context *context, MPI_Comm group,
     snow_insitu *insitu = NULL;
     if (!context)
         snow_context_new(NULL, &own);
-    if (!all_are(group, context || own)) {
+    const int mine = context || own;
+    int all = 0; /* 1 where all ranks succeeded */
+    if (MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, group) != MPI_SUCCESS ||
+        !all) {
         snow_context_free(own);
         return SNOW_STATUS_NO_MEMORY;
     }

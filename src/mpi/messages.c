@@ -101,14 +101,6 @@ static int large_type(size_t bytes, MPI_Datatype *out) {
     return error;
 }
 
-static int start(mpi_side *side, mpi_slot *slot, void *bytes, int count,
-                 MPI_Datatype type, int tag) {
-    return slot->receives ? MPI_Irecv(bytes, count, type, slot->peer, tag,
-                                      side->group, &slot->request)
-                          : MPI_Isend(bytes, count, type, slot->peer, tag,
-                                      side->group, &slot->request);
-}
-
 /* Starts a send or a receive. */
 static snow_status begin_message(mpi_side *side, bool receives, void *bytes,
                                  size_t count, int peer, int tag,
@@ -123,15 +115,16 @@ static snow_status begin_message(mpi_side *side, bool receives, void *bytes,
     slot->large = count > SNOW_MPI_CHUNK;
     if (!receives)
         snow_mpi_node_sync(side->node);
-    if (!slot->large) {
-        error = start(side, slot, bytes, (int)count, MPI_BYTE, tag);
-    } else {
-        MPI_Datatype type;
-        error = large_type(count, &type);
-        if (error == MPI_SUCCESS) {
-            error = start(side, slot, bytes, 1, type, tag);
+    MPI_Datatype type = MPI_BYTE;
+    const int items = slot->large ? 1 : (int)count;
+    error = slot->large ? large_type(count, &type) : MPI_SUCCESS;
+    if (error == MPI_SUCCESS) {
+        error = receives ? MPI_Irecv(bytes, items, type, peer, tag, side->group,
+                                     &slot->request)
+                         : MPI_Isend(bytes, items, type, peer, tag, side->group,
+                                     &slot->request);
+        if (slot->large)
             MPI_Type_free(&type); /* waits until it is not needed */
-        }
     }
     if (error != MPI_SUCCESS) {
         slot->request = MPI_REQUEST_NULL;
@@ -173,19 +166,15 @@ static int collect_requests(mpi_side *side, const snow_message *messages,
     return asked;
 }
 
-/* The bytes received, which may exceed an int. */
-static size_t count_bytes(const MPI_Status *status) {
-    MPI_Count bytes = 0;
-    MPI_Get_elements_x(status, MPI_BYTE, &bytes);
-    return (size_t)bytes;
-}
-
 /* Completes a message: its slot is spare, its length known. */
 static void complete_message(mpi_side *side, snow_message *message,
                              const MPI_Status *status) {
     mpi_slot *slot = slot_of(side, message);
-    if (slot->receives)
-        message->bytes = count_bytes(status);
+    MPI_Count bytes = 0; /* which may exceed an int */
+    if (slot->receives) {
+        MPI_Get_elements_x(status, MPI_BYTE, &bytes);
+        message->bytes = (size_t)bytes;
+    }
     slot->request = MPI_REQUEST_NULL;
     message->handle = NULL;
     snow_mpi_node_sync(side->node);

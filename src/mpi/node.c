@@ -134,19 +134,18 @@ int snow_mpi_node_of(void *self, int rank) {
 
 /* --- the window ----------------------------------------------------------- */
 
-/* Returns whether the windows of all members fit twice. */
-static bool has_room(const mpi_node *node, size_t bytes) {
-    struct statvfs scratch;
-    return statvfs("/dev/shm", &scratch) == 0 && scratch.f_frsize &&
-           bytes / scratch.f_frsize <
-               scratch.f_bavail / 2 / (unsigned)node->members;
-}
-
 /* NULL, on all ranks of a node: it has too little room. */
 static void *make_window(mpi_node *node, size_t bytes) {
     void *own = NULL;
     free_window(node);
-    if (node->members < 2 || !least_of(node->group, has_room(node, bytes)))
+    if (node->members < 2)
+        return NULL;
+    /* The windows of all members fit twice. */
+    struct statvfs scratch;
+    const bool fits = statvfs("/dev/shm", &scratch) == 0 && scratch.f_frsize &&
+                      bytes / scratch.f_frsize <
+                          scratch.f_bavail / 2 / (unsigned)node->members;
+    if (!least_of(node->group, fits))
         return NULL;
     const bool made =
         MPI_Win_allocate_shared((MPI_Aint)bytes, 1, MPI_INFO_NULL, node->group,

@@ -145,12 +145,6 @@ typedef struct tree_reduction {
     size_t floats; /* of the piece */
 } tree_reduction;
 
-static const char *skip_block(const tree_reduction *w, const char *block) {
-    snow_rectangle part;
-    memcpy(&part, block, HEAD);
-    return block + HEAD + pixels_in(part) * pixel_bytes(w->local);
-}
-
 /* The block of a node that a rank has sent; NULL where none has. */
 static const char *find_block(const tree_reduction *w, snow_group_node node) {
     const snow_ranks *r = w->ranks;
@@ -161,8 +155,11 @@ static const char *find_block(const tree_reduction *w, snow_group_node node) {
         for (int n = 0; n < count; n++) {
             if (nodes[n].rank == node.rank && nodes[n].index == node.index)
                 return block;
-            if (n + 1 < count)
-                block = skip_block(w, block);
+            snow_rectangle part;
+            if (n + 1 == count)
+                break;
+            memcpy(&part, block, HEAD);
+            block += HEAD + pixels_in(part) * pixel_bytes(w->local);
         }
     }
     return NULL;

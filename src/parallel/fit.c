@@ -230,12 +230,6 @@ static snow_status fit_view(fit *f, snow_comm *comm, const snow_volume *volume,
     return SNOW_STATUS_OK;
 }
 
-static snow_status make_room(fit *f) {
-    SNOW_TRY(SNOW_RESERVE(f->context, f->cameras, 0, f->count));
-    SNOW_TRY(SNOW_RESERVE(f->context, f->margins, 0, f->count));
-    return SNOW_RESERVE(f->context, f->bounds, 0, f->settings.threads);
-}
-
 /* The surface of mode iso is where values begin. */
 static snow_status choose_transfer(fit *f, snow_transfer **own) {
     const double iso = f->settings.iso;
@@ -278,7 +272,11 @@ snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
     SNOW_TRY(snow_settings_resolve(f.context, &f.whole, &f.settings));
     snow_status status = choose_transfer(&f, &own);
     if (status == SNOW_STATUS_OK)
-        status = make_room(&f);
+        status = SNOW_RESERVE(f.context, f.cameras, 0, f.count);
+    if (status == SNOW_STATUS_OK)
+        status = SNOW_RESERVE(f.context, f.margins, 0, f.count);
+    if (status == SNOW_STATUS_OK)
+        status = SNOW_RESERVE(f.context, f.bounds, 0, f.settings.threads);
     if (comm)
         status = snow_comm_agree_status(comm, status);
     if (status == SNOW_STATUS_OK)

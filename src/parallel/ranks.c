@@ -85,18 +85,14 @@ snow_status snow_ranks_of(snow_frame *frame, snow_comm *comm) {
 
 /* --- the order of parts --------------------------------------------------- */
 
-static bool is_same_viewer(const snow_viewer *a, const snow_viewer *b) {
-    return a->perspective == b->perspective &&
-           memcmp(a->eye, b->eye, sizeof a->eye) == 0 &&
-           memcmp(a->along, b->along, sizeof a->along) == 0;
-}
-
 snow_status snow_ranks_put_in_order(snow_ranks *r,
                                     const snow_placement *placement) {
     snow_viewer viewer = {0};
     snow_clip_viewer(placement, &viewer);
     if (r->ordered && r->ordered == r->generation &&
-        is_same_viewer(&r->viewer, &viewer))
+        viewer.perspective == r->viewer.perspective &&
+        memcmp(viewer.eye, r->viewer.eye, sizeof viewer.eye) == 0 &&
+        memcmp(viewer.along, r->viewer.along, sizeof viewer.along) == 0)
         return SNOW_STATUS_OK;
     r->ordered = 0;
     SNOW_TRY(

@@ -245,14 +245,6 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
 
 /* --- places --------------------------------------------------------------- */
 
-/* Where pixels come together that are not the picture yet. */
-static snow_status place_gathered(snow_in_flight *f) {
-    const snow_job *job = &f->picture.pass->job;
-    if (!snow_in_flight_keeps(f) || !is_sum(job->settings.mode))
-        return SNOW_STATUS_OK;
-    return make_clear(job, &f->gathered);
-}
-
 /* A layer, or in deterministic pictures of the footprint methods one for each
  * node. */
 static snow_status place_layers(snow_in_flight *f) {
@@ -277,7 +269,9 @@ static snow_status place_volume(snow_picture *p, snow_status status) {
     if (p->pass->depth)
         return snow_in_flight_take_turn(f, status);
     SNOW_TRY(status);
-    SNOW_TRY(place_gathered(f));
+    /* Where pixels come together that are not the picture yet. */
+    if (snow_in_flight_keeps(f) && is_sum(job->settings.mode))
+        SNOW_TRY(make_clear(job, &f->gathered));
     if (p->pass->method->warps)
         return SNOW_STATUS_OK;
     SNOW_TRY(place_layers(f));

@@ -3,6 +3,7 @@
  * Threads share the slices of a box.  Each widens bounds of its own, within
  * which it looks at no voxel again; what all have found does not depend on who
  * looked at what. */
+#include "base/minmax.h"
 #include "base/thread_pool.h"
 #include "parallel/trim.h"
 
@@ -68,14 +69,6 @@ static int64_t find_last(const search *s, int64_t row, int64_t x, int64_t end) {
     return -NOWHERE;
 }
 
-static int64_t less(int64_t a, int64_t b) {
-    return a < b ? a : b;
-}
-
-static int64_t more(int64_t a, int64_t b) {
-    return a > b ? a : b;
-}
-
 /* Widens bounds by voxels x .. end - 1 of a row.  Those within are not looked
  * at. */
 static void add_row(const search *s, const int64_t at[3], int64_t end,
@@ -88,15 +81,15 @@ static void add_row(const search *s, const int64_t at[3], int64_t end,
     const bool within = at[1] >= b->first[1] && at[1] <= b->last[1] &&
                         at[2] >= b->first[2] && at[2] <= b->last[2];
     const int64_t first =
-        find_first(s, row, x, within ? less(b->first[0], end) : end);
-    const int64_t last =
-        find_last(s, row, within ? more(b->last[0] + 1, x) : more(first, x),
-                  first == NOWHERE && !within ? x : end);
-    b->first[0] = less(b->first[0], first);
-    b->last[0] = more(b->last[0], last);
+        find_first(s, row, x, within ? SNOW_MIN(b->first[0], end) : end);
+    const int64_t last = find_last(
+        s, row, within ? SNOW_MAX(b->last[0] + 1, x) : SNOW_MAX(first, x),
+        first == NOWHERE && !within ? x : end);
+    b->first[0] = SNOW_MIN(b->first[0], first);
+    b->last[0] = SNOW_MAX(b->last[0], last);
     for (int i = 1; i < 3 && first != NOWHERE; i++) {
-        b->first[i] = less(b->first[i], at[i]);
-        b->last[i] = more(b->last[i], at[i]);
+        b->first[i] = SNOW_MIN(b->first[i], at[i]);
+        b->last[i] = SNOW_MAX(b->last[i], at[i]);
     }
 }
 
@@ -131,8 +124,8 @@ static snow_status find_bounds(search *s, const snow_box *box,
                                              s->box.count[2], look_at_slice, s);
     for (int n = 0; n < s->threads; n++) {
         for (int i = 0; i < 3; i++) {
-            out->first[i] = less(out->first[i], s->found[n].first[i]);
-            out->last[i] = more(out->last[i], s->found[n].last[i]);
+            out->first[i] = SNOW_MIN(out->first[i], s->found[n].first[i]);
+            out->last[i] = SNOW_MAX(out->last[i], s->found[n].last[i]);
         }
     }
     return status;

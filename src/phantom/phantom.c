@@ -23,13 +23,6 @@ const char *snow_phantom_description(size_t index) {
     return index < phantom_count ? phantoms[index]->text : NULL;
 }
 
-static const snow_phantom *find_phantom(const char *name) {
-    for (size_t i = 0; i < phantom_count; i++)
-        if (strcmp(name, phantoms[i]->name) == 0)
-            return phantoms[i];
-    return NULL;
-}
-
 static snow_status refuse_name(snow_context *context, const char *name) {
     char names[256] = "";
     for (size_t i = 0; i < phantom_count; i++) {
@@ -112,9 +105,12 @@ static snow_status fill_phantom(const snow_phantom *phantom,
 snow_status snow_phantom_make(snow_context *context, const char *name,
                               const snow_volume_options *options, uint64_t seed,
                               snow_volume_info *info, snow_volume **out) {
-    const snow_phantom *phantom = find_phantom(name);
-    if (!phantom)
+    size_t number = 0;
+    while (number < phantom_count && strcmp(name, phantoms[number]->name) != 0)
+        number++;
+    if (number == phantom_count)
         return refuse_name(context, name);
+    const snow_phantom *phantom = phantoms[number];
     snow_phantom_grid grid;
     SNOW_TRY(lay_grid(context, phantom, options->dims, seed, &grid));
     snow_volume_info given = describe_phantom(phantom, &grid);

@@ -79,11 +79,6 @@ static snow_status make_picture(snow_context *context,
     return status;
 }
 
-/* Whether a recipe names its shade; a record that was not read does not. */
-static bool has_shade(const snow_recipe *recipe) {
-    return json_object_get(recipe->owned, "shade") != NULL;
-}
-
 /* The title of a bar, "name (unit)", as its parts, each "" where it has none.
  */
 static void split_title(const char *title, char name[128], char unit[128]) {
@@ -133,18 +128,18 @@ static snow_status set_picture(const snow_recipe *recipe, const picture *p,
                                        .seconds = recipe->limit_seconds,
                                        .bytes = (uint64_t)recipe->limit_bytes};
     const bool limited = limits.seconds > 0 || limits.bytes > 0;
-    const snow_insitu_settings settings = {.size = sizeof settings,
-                                           .output = recipe->output,
-                                           .image = &recipe->image,
-                                           .look = &p->look,
-                                           .view = &p->view,
-                                           .picture = &p->settings,
-                                           .shaded = has_shade(recipe),
-                                           .clip = recipe->data.clip[0],
-                                           .clip_count =
-                                               count_planes(recipe->data.clip),
-                                           .annotations = &annotations,
-                                           .limits = limited ? &limits : NULL};
+    const snow_insitu_settings settings = {
+        .size = sizeof settings,
+        .output = recipe->output,
+        .image = &recipe->image,
+        .look = &p->look,
+        .view = &p->view,
+        .picture = &p->settings,
+        .shaded = json_object_get(recipe->owned, "shade") != NULL,
+        .clip = recipe->data.clip[0],
+        .clip_count = count_planes(recipe->data.clip),
+        .annotations = &annotations,
+        .limits = limited ? &limits : NULL};
     return snow_insitu_set(insitu, &settings);
 }
 

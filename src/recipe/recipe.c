@@ -30,23 +30,18 @@ void snow_recipe_clear(snow_recipe *recipe) {
 
 /* --- reading -------------------------------------------------------------- */
 
-static const recipe_key *key_named(const char *name) {
-    const recipe_key *key = recipe_keys;
-    while (key->name && strcmp(key->name, name) != 0)
-        key++;
-    return key->name ? key : NULL;
-}
-
 static snow_status take_key(snow_context *context, const char *source,
                             const char *name, const json_t *value,
                             snow_recipe *out) {
     char wrong[WRONG_BYTES];
-    const recipe_key *key = key_named(name);
-    const char *now = key ? NULL : recipe_renamed(name);
+    const recipe_key *key = recipe_keys;
+    while (key->name && strcmp(key->name, name) != 0)
+        key++;
+    const char *now = key->name ? NULL : recipe_renamed(name);
     if (now)
         return snow_context_fail(context, SNOW_STATUS_BAD_INPUT,
                                  "%s: \"%s\" is now %s", source, name, now);
-    if (!key)
+    if (!key->name)
         return snow_context_fail(context, SNOW_STATUS_BAD_INPUT,
                                  "%s: \"%.64s\" is not a key of a recipe; use "
                                  "the tool's long options without dashes",

@@ -64,14 +64,11 @@ bool recipe_read_int(const recipe_key *key, const json_t *value, void *field,
     return true;
 }
 
-static json_t *write_int(const recipe_key *key, const void *field) {
-    (void)key;
-    return json_integer(*(const int *)field);
-}
-
 /* A number that is omitted if it is 0. */
 json_t *recipe_write_given_int(const recipe_key *key, const void *field) {
-    return *(const int *)field ? write_int(key, field) : NULL;
+    const int value = *(const int *)field;
+    (void)key;
+    return value ? json_integer(value) : NULL;
 }
 
 /* int64_t and, for numbers from 0 on, uint64_t. */

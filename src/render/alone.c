@@ -134,19 +134,17 @@ static snow_status combine(snow_picture *p, const snow_job *part,
 
 /* --- the picture ---------------------------------------------------------- */
 
-static snow_status warp(snow_picture *p) {
-    if (p->local.image.layers > 1)
-        return fail_part(p, "deterministic rendering", "");
-    return p->pass->method->show(p, &p->pass->job);
-}
-
 static snow_status show(snow_picture *p) {
     snow_mode mode = p->job.settings.mode;
     if (mode != SNOW_MODE_OVER && mode != SNOW_MODE_ISO) {
         SNOW_TRY(snow_step(p->pass->method->show, p, &p->pass->job));
         return snow_modes_paint(p->frame, &p->job, p->local.pixels, &p->image);
     }
-    return p->pass->method->warps ? warp(p) : SNOW_STATUS_OK;
+    if (!p->pass->method->warps)
+        return SNOW_STATUS_OK;
+    if (p->local.image.layers > 1)
+        return fail_part(p, "deterministic rendering", "");
+    return p->pass->method->show(p, &p->pass->job);
 }
 
 static snow_status display(snow_picture *p, snow_status status) {

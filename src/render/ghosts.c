@@ -40,15 +40,6 @@ static void at_least(int64_t *layers, double wanted, int64_t most) {
         *layers = (int64_t)wanted;
 }
 
-/* How far gradients of values look in the plane: in perspective a voxel and a
- * half, and no less than the samples of the last sheet are apart, which is
- * `ratio` times as far from the eye as the first. */
-static double values_beside(const question *q, double ratio) {
-    if (!q->gradients || q->view->fov == 0)
-        return q->gradients;
-    return fmax(q->gradients + 1, fmin(ceil(ratio), SNOW_VALUE_SPREAD_MOST));
-}
-
 /* A cubic kernel reaches one voxel more, in the plane and across it. */
 static int cubic(const question *q) {
     return q->settings->kernel == SNOW_KERNEL_BSPLINE;
@@ -67,20 +58,23 @@ static ways ways_of(const question *q, bool fits) {
     return (ways){values, others && !iso, others && iso};
 }
 
-/* Rays look from one end of a step to the one before, half a voxel away at
- * most. */
-static double layers_of_rays(const question *q) {
-    return 1 + cubic(q) + q->gradients;
-}
-
 /* Layers along an axis that lies in the slices, whose pixels are `width` voxels
  * wide; from slice to slice rays go `slope` voxels aside. */
 static double layers_beside(const question *q, ways by, double ratio,
                             double width, double slope) {
-    double values = 0, footprints = 0, rays = by.rays ? layers_of_rays(q) : 0;
+    /* Rays look from one end of a step to the one before, half a voxel away at
+     * most. */
+    double values = 0, footprints = 0;
+    double rays = by.rays ? 1 + cubic(q) + q->gradients : 0;
+    /* Gradients of values look so far in the plane: in perspective a voxel and
+     * a half, and no less than the samples of the last sheet are apart, which
+     * is `ratio` times as far from the eye as the first. */
+    double plane = q->gradients;
+    if (q->gradients && q->view->fov != 0)
+        plane = fmax(plane + 1, fmin(ceil(ratio), SNOW_VALUE_SPREAD_MOST));
     if (by.values)
-        values = 1 + cubic(q) + values_beside(q, ratio) +
-                 fmin(ceil(slope), SNOW_VALUE_REACH_MOST);
+        values =
+            1 + cubic(q) + plane + fmin(ceil(slope), SNOW_VALUE_REACH_MOST);
     if (by.footprints) {
         snow_scaled_kernel kernel = snow_scaled_kernel_make(
             q->settings->kernel, q->settings->footprint, width);

@@ -170,20 +170,16 @@ snow_status snow_picture_new_depths(snow_picture *p, snow_image **out) {
 
 /* --- the end -------------------------------------------------------------- */
 
-static snow_status darken_by_depths(snow_picture *p) {
-    snow_status status = SNOW_STATUS_OK;
-    if (p->image && p->depth)
-        status = snow_depth_darken(&p->job, p->depth, p->image);
-    return p->combiner->agree(p, status);
-}
-
 snow_status snow_darken(snow_picture *p, snow_status status) {
     const double mark = snow_seconds(), mark_cpu = snow_cpu_seconds();
     const snow_settings *settings = &p->job.settings;
     if (status == SNOW_STATUS_OK && settings->occlusion > 0)
         status = snow_occlude(p);
-    if (status == SNOW_STATUS_OK && settings->depth_darkening > 0)
-        status = darken_by_depths(p);
+    if (status == SNOW_STATUS_OK && settings->depth_darkening > 0) {
+        if (p->image && p->depth)
+            status = snow_depth_darken(&p->job, p->depth, p->image);
+        status = p->combiner->agree(p, status);
+    }
     if (p->combiner == &snow_combine_alone) { /* others count their calls */
         p->stats.seconds_frame += snow_seconds() - mark;
         p->stats.cpu_frame += snow_cpu_seconds() - mark_cpu;

@@ -5,15 +5,6 @@
 #include <math.h>
 #include <snowglass/snowglass.h>
 
-/* Refuses a number outside of [low, high], or not a number. */
-static snow_status check_range(snow_context *context, const char *name,
-                               double value, double low, double high) {
-    if (value >= low && value <= high)
-        return SNOW_STATUS_OK;
-    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                     "invalid %s %g: must be %g to %g", name, value, low, high);
-}
-
 static snow_status check_choice(snow_context *context, const char *name,
                                 int value, int count) {
     if (value >= 0 && value < count)
@@ -43,8 +34,11 @@ static snow_status check_numbers(snow_context *context,
         {"threads", s->threads, 0, SNOW_THREADS_MOST},
     };
     for (int i = 0; i < (int)(sizeof numbers / sizeof *numbers); i++)
-        SNOW_TRY(check_range(context, numbers[i].name, numbers[i].value,
-                             numbers[i].low, numbers[i].high));
+        if (!(numbers[i].value >= numbers[i].low &&
+              numbers[i].value <= numbers[i].high))
+            return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                             "invalid %s %g: must be %g to %g", numbers[i].name,
+                             numbers[i].value, numbers[i].low, numbers[i].high);
     return SNOW_STATUS_OK;
 }
 
@@ -60,12 +54,6 @@ static snow_status resolve_machine(snow_context *context, snow_settings *s) {
                          snow_isa_name(s->isa), snow_isa_found());
     s->isa = snow_isa_resolve(s->isa);
     return SNOW_STATUS_OK;
-}
-
-/* Methods that interpolate values go through those of voxels. */
-static bool takes_tent(const snow_settings *s) {
-    return s->method == SNOW_METHOD_RAYCAST ||
-           s->method == SNOW_METHOD_SHEAR_WARP;
 }
 
 /* Kernels that interpolate values; the others are those of footprints. */
@@ -120,9 +108,12 @@ snow_status snow_settings_resolve(snow_context *context,
     if (s->method == SNOW_METHOD_AUTO ||
         (s->mode == SNOW_MODE_ISO && s->method != SNOW_METHOD_RAYCAST))
         s->method = SNOW_METHOD_SHEAR_WARP;
+    /* Methods that interpolate values go through those of voxels. */
+    const bool tent =
+        s->method == SNOW_METHOD_RAYCAST || s->method == SNOW_METHOD_SHEAR_WARP;
     if (s->kernel == SNOW_KERNEL_AUTO)
-        s->kernel = s->footprint == 0 && takes_tent(s) ? SNOW_KERNEL_TENT
-                                                       : SNOW_KERNEL_BSPLINE;
+        s->kernel =
+            s->footprint == 0 && tent ? SNOW_KERNEL_TENT : SNOW_KERNEL_BSPLINE;
     if (s->footprint == 0)
         s->footprint = snow_kernel_default_support(s->kernel);
     SNOW_TRY(check_kernel(context, s));

@@ -159,16 +159,14 @@ float snow_scaled_kernel_box(const snow_scaled_kernel *scaled_kernel,
     return (float)(1 / ceil(width - fraction));
 }
 
-static bool is_same(const snow_scaled_kernel *a, const snow_scaled_kernel *b) {
-    return a->kernel == b->kernel && a->support == b->support &&
-           a->half == b->half && a->wide == b->wide;
-}
-
 snow_status
 snow_scaled_kernel_table_make(snow_context *context,
                               const snow_scaled_kernel *scaled_kernel,
                               snow_scaled_kernel_table *out) {
-    if (out->cells && is_same(scaled_kernel, &out->made_for))
+    const snow_scaled_kernel *made = &out->made_for;
+    if (out->cells && scaled_kernel->kernel == made->kernel &&
+        scaled_kernel->support == made->support &&
+        scaled_kernel->half == made->half && scaled_kernel->wide == made->wide)
         return SNOW_STATUS_OK;
     /* A wide kernel is smooth: fewer cells per voxel suffice. A widened one of
      * support 2 has steep kinks within cells, where the number of voxels in

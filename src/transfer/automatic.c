@@ -284,13 +284,6 @@ static void build_constant(const snow_histogram *histogram,
 #define BINS_HU 40
 #define BIN_HU(value) (((value) + 1100) / 100)
 
-/* Returns whether the whole is seen from its face, which is a cut. */
-static bool is_slab(const snow_histogram *histogram) {
-    snow_volume_info whole;
-    snow_volume_whole(histogram->volume, &whole);
-    return snow_volume_thin_axis(&whole) >= 0;
-}
-
 /* The preset for a CT in Hounsfield units: for bone, if that is 0.5 % of the
  * body, else, and for a slab, of which only rings would be left, for soft
  * tissue; -1 for other volumes.  Of what names no modality
@@ -306,10 +299,13 @@ static snow_status hounsfield_preset(const snow_histogram *histogram,
     double air = share_of(counts, 0, BIN_HU(-900), all);
     double body = share_of(counts, BIN_HU(-200), BINS_HU, all);
     double bone = share_of(counts, BIN_HU(300), BINS_HU, all);
+    /* A slab is seen from its face, which is a cut. */
+    snow_volume_info whole;
+    snow_volume_whole(histogram->volume, &whole);
+    const bool slab = snow_volume_thin_axis(&whole) >= 0;
     if (body > 0 && (*info->modality || air >= 0.02))
         *preset = snow_preset_from_name(
-            bone >= 0.005 * body && !is_slab(histogram) ? "ct-bone"
-                                                        : "ct-soft");
+            bone >= 0.005 * body && !slab ? "ct-bone" : "ct-soft");
     return SNOW_STATUS_OK;
 }
 

@@ -3,6 +3,7 @@
  *
  * Values of points never decrease: errors of rounding logarithms are
  * corrected. */
+#include "base/minmax.h"
 #include "transfer/look.h"
 
 #include <math.h>
@@ -139,24 +140,22 @@ double snow_transfer_builder_place(const snow_transfer_builder *builder,
                : snow_between_on(builder->scale, 0, high, 2 * share - 1);
 }
 
-/* Extends the range of colours to all values that have opacities. */
-static void widen_range(double value, double *low, double *high) {
-    *low = value < *low ? value : *low;
-    *high = value > *high ? value : *high;
-}
-
 /* The range of values of points in data units. */
 static void own_range(const snow_look *points, double *low, double *high) {
+    const size_t colors = points->color_count, count = points->opacity_count;
     *low = INFINITY;
     *high = -INFINITY;
-    if (points->color_count) {
-        widen_range(points->colors[0].value, low, high);
-        widen_range(points->colors[points->color_count - 1].value, low, high);
-    }
-    if (points->opacity_count) {
-        widen_range(points->opacities[0].value, low, high);
-        widen_range(points->opacities[points->opacity_count - 1].value, low,
-                    high);
+    for (int last = 0; last < 2; last++) {
+        if (colors) {
+            const double at = points->colors[last ? colors - 1 : 0].value;
+            *low = SNOW_MIN(at, *low);
+            *high = SNOW_MAX(at, *high);
+        }
+        if (count) { /* all values that have opacities */
+            const double at = points->opacities[last ? count - 1 : 0].value;
+            *low = SNOW_MIN(at, *low);
+            *high = SNOW_MAX(at, *high);
+        }
     }
 }
 

@@ -147,10 +147,6 @@ void snow_transfer_evaluate(const snow_transfer *transfer, double value,
 
 /* --- categories ----------------------------------------------------------- */
 
-static bool same_color(const snow_color_point *a, const snow_color_point *b) {
-    return a->red == b->red && a->green == b->green && a->blue == b->blue;
-}
-
 /* Returns whether values are the numbers of things rather than quantities: the
  * colours of categories have steps, and do not change in between. */
 bool snow_transfer_has_labels(const snow_transfer *transfer,
@@ -158,7 +154,8 @@ bool snow_transfer_has_labels(const snow_transfer *transfer,
     const snow_color_point *c = transfer->colors;
     bool steps = false;
     for (size_t n = 1; n < transfer->color_count; n++) {
-        if (same_color(&c[n], &c[n - 1]))
+        if (c[n].red == c[n - 1].red && c[n].green == c[n - 1].green &&
+            c[n].blue == c[n - 1].blue)
             continue;
         if (c[n].value != c[n - 1].value)
             return false;

@@ -9,22 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-/* A key with the order of doubles: all bits of negative numbers are inverted,
- * of others the sign bit; -0 counts as 0. */
-static uint64_t key_of(double value) {
-    uint64_t bits;
-    value += 0.0;
-    memcpy(&bits, &value, sizeof bits);
-    return bits >> 63 ? ~bits : bits | UINT64_C(1) << 63;
-}
-
-static double value_of(uint64_t key) {
-    uint64_t bits = key >> 63 ? key ^ UINT64_C(1) << 63 : ~key;
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 /* The search for one quantile: the bits found so far, and its rank among the
  * values that share them. */
 typedef struct search {
@@ -59,7 +43,12 @@ static snow_status count_digits(const snow_volume *slab, void *user) {
         for (size_t i = 0; i < got; i++) {
             if (!isfinite(values[i]))
                 continue;
-            uint64_t key = key_of(values[i]);
+            /* A key with the order of doubles: all bits of negative numbers
+             * are inverted, of others the sign bit; -0 counts as 0. */
+            const double value = values[i] + 0.0;
+            uint64_t key;
+            memcpy(&key, &value, sizeof key);
+            key = key >> 63 ? ~key : key | UINT64_C(1) << 63;
             d->all++;
             for (size_t n = 0; n < d->count; n++)
                 if ((key & above) == d->searches[n].prefix)
@@ -115,8 +104,11 @@ static snow_status select_keys(const snow_histogram *histogram,
     if (status == SNOW_STATUS_OK)
         status = select_digits(histogram, histogram_mode, fractions, count,
                                searches, counts);
-    for (size_t n = 0; n < count && status == SNOW_STATUS_OK; n++)
-        out[n] = value_of(searches[n].prefix);
+    for (size_t n = 0; n < count && status == SNOW_STATUS_OK; n++) {
+        const uint64_t key = searches[n].prefix;
+        const uint64_t bits = key >> 63 ? key ^ UINT64_C(1) << 63 : ~key;
+        memcpy(&out[n], &bits, sizeof bits);
+    }
     snow_release(context, counts);
     return status;
 }

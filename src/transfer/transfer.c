@@ -54,13 +54,6 @@ static snow_status check_opacities(snow_context *context, const char *kind,
     return SNOW_STATUS_OK;
 }
 
-static bool all_grey(const snow_color_point *colors, size_t count) {
-    for (size_t i = 0; i < count; i++)
-        if (colors[i].red != colors[i].green || colors[i].red != colors[i].blue)
-            return false;
-    return true;
-}
-
 snow_status snow_transfer_new(snow_context *context,
                               const snow_color_point *colors,
                               size_t color_count,
@@ -79,7 +72,10 @@ snow_status snow_transfer_new(snow_context *context,
     transfer->context = context;
     transfer->color_count = color_count;
     transfer->opacity_count = opacity_count;
-    transfer->grey = all_grey(colors, color_count);
+    transfer->grey = true;
+    for (size_t i = 0; i < color_count; i++)
+        transfer->grey &=
+            colors[i].red == colors[i].green && colors[i].red == colors[i].blue;
     snow_status status =
         SNOW_RESERVE(context, transfer->colors, 0, color_count);
     if (status == SNOW_STATUS_OK)
@@ -131,20 +127,16 @@ void snow_transfer_describe(snow_transfer *transfer, const char *chosen) {
     describe_gradients(transfer);
 }
 
-static bool all_one(const snow_opacity_point *points, size_t count) {
-    for (size_t i = 0; i < count; i++)
-        if (points[i].opacity != 1)
-            return false;
-    return true;
-}
-
 snow_status snow_transfer_set_gradient_opacity(snow_transfer *transfer,
                                                const snow_opacity_point *points,
                                                size_t count) {
     snow_opacity_point *gradients = NULL;
     SNOW_TRY(
         check_opacities(transfer->context, "gradient opacity", points, count));
-    if (all_one(points, count))
+    size_t ones = 0;
+    while (ones < count && points[ones].opacity == 1)
+        ones++;
+    if (ones == count)
         count = 0;
     if (count) {
         SNOW_TRY(SNOW_RESERVE(transfer->context, gradients, 0, count));

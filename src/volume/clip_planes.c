@@ -132,14 +132,6 @@ static bool is_beyond(const snow_clip_planes *clip, const int64_t at[3],
     return beyond;
 }
 
-static snow_status keep_voxel(snow_clip_planes *clip, int64_t index,
-                              double native) {
-    SNOW_TRY(SNOW_RESERVE(clip->context, clip->voxels, clip->voxel_count,
-                          clip->voxel_count + 1));
-    clip->voxels[clip->voxel_count++] = (snow_clipped_voxel){index, native};
-    return SNOW_STATUS_OK;
-}
-
 snow_status snow_clip_planes_apply(snow_clip_planes *clip,
                                    const int64_t dims[3], int64_t first,
                                    size_t count, bool keep, double *stored) {
@@ -148,8 +140,13 @@ snow_status snow_clip_planes_apply(snow_clip_planes *clip,
     for (size_t i = 0; i < count; i++) {
         bool reached;
         if (is_beyond(clip, at, &reached)) {
-            if (keep && reached && !isnan(stored[i]))
-                SNOW_TRY(keep_voxel(clip, first + (int64_t)i, stored[i]));
+            if (keep && reached && !isnan(stored[i])) {
+                SNOW_TRY(SNOW_RESERVE(clip->context, clip->voxels,
+                                      clip->voxel_count,
+                                      clip->voxel_count + 1));
+                clip->voxels[clip->voxel_count++] =
+                    (snow_clipped_voxel){first + (int64_t)i, stored[i]};
+            }
             stored[i] = NAN;
         }
         if (++at[0] < dims[0])

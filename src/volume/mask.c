@@ -205,14 +205,6 @@ static void mask_values(const snow_volume *mask, inside *in, int64_t first,
             values[i] = NAN;
 }
 
-/* What an earlier cut has left out is beyond its planes, which cut again. */
-static void restore(const snow_clip_planes *before, int64_t first, size_t count,
-                    double *values) {
-    for (size_t i = 0; before && i < count; i++)
-        if (isnan(values[i]))
-            values[i] = snow_clip_planes_value(before, first + (int64_t)i);
-}
-
 /* *any: whether any voxel is left.  The mask may be
  * NULL. */
 static snow_status leave_out(const snow_volume *volume, const snow_cuts *by,
@@ -225,7 +217,12 @@ static snow_status leave_out(const snow_volume *volume, const snow_cuts *by,
     for (int64_t first = 0; first < all; first += BLOCK) {
         size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
         snow_volume_stored(volume, first, count, values);
-        restore(volume->clip, first, count, values);
+        /* What an earlier cut has left out is beyond its planes, which cut
+         * again. */
+        for (size_t i = 0; volume->clip && i < count; i++)
+            if (isnan(values[i]))
+                values[i] =
+                    snow_clip_planes_value(volume->clip, first + (int64_t)i);
         for (size_t i = 0; i < count && !made->had_negative; i++)
             made->had_negative = slope * values[i] + from < 0;
         if (by->mask)

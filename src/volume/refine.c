@@ -1,6 +1,7 @@
 /* volume/refine.c - cells that are several voxels wide, as the voxels
  * (refine.h). */
 #include "volume/refine.h"
+#include "base/minmax.h"
 
 #include <math.h>
 #include <string.h>
@@ -86,22 +87,16 @@ static void complete(double p[STENCIL]) {
         p[OWN - 2] = extrapolate(p[OWN - 1], p[OWN], p[OWN + 1], p[OWN + 2]);
 }
 
-static double less(double a, double b) {
-    return a < b ? a : b;
-}
-
-static double more(double a, double b) {
-    return a > b ? a : b;
-}
-
 static double at_place(const double p[STENCIL], const place *at) {
     const double *inner = p + INNER, *four = inner + at->above;
     double sum = 0;
     for (int i = 0; i < 5; i++)
         sum += at->weights[i] * inner[i];
-    const double low = less(less(four[0], four[1]), less(four[2], four[3]));
-    const double high = more(more(four[0], four[1]), more(four[2], four[3]));
-    return sum < low ? low : less(high, sum);
+    const double low =
+        SNOW_MIN(SNOW_MIN(four[0], four[1]), SNOW_MIN(four[2], four[3]));
+    const double high =
+        SNOW_MAX(SNOW_MAX(four[0], four[1]), SNOW_MAX(four[2], four[3]));
+    return sum < low ? low : SNOW_MIN(high, sum);
 }
 
 /* Returns whether its own value can be blended with others; completes these. */
@@ -126,12 +121,12 @@ static bool blend_all(const double *const from[STENCIL], const place *at,
     uint64_t lacks = 0;
     for (int64_t i = 0; i < count; i++) {
         const double low =
-            less(less(first[i], left[i]), less(right[i], last[i]));
+            SNOW_MIN(SNOW_MIN(first[i], left[i]), SNOW_MIN(right[i], last[i]));
         const double high =
-            more(more(first[i], left[i]), more(right[i], last[i]));
+            SNOW_MAX(SNOW_MAX(first[i], left[i]), SNOW_MAX(right[i], last[i]));
         const double sum =
             0 + wa * a[i] + wb * b[i] + wc * c[i] + wd * d[i] + we * e[i];
-        out[i] = sum < low ? low : less(high, sum);
+        out[i] = sum < low ? low : SNOW_MIN(high, sum);
         const double all = a[i] + b[i] + c[i] + d[i] + e[i];
         uint64_t bits;
         memcpy(&bits, &all, sizeof bits);

@@ -184,12 +184,6 @@ snow_volume *snow_slabs_keep(snow_slabs *slabs) {
     return slabs->slab;
 }
 
-static void note_mask(snow_stream *stream, const snow_volume *slab) {
-    stream->left = stream->left || !slab->emptied;
-    stream->mask_range[0] = fmin(stream->mask_range[0], slab->mask_range[0]);
-    stream->mask_range[1] = fmax(stream->mask_range[1], slab->mask_range[1]);
-}
-
 snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab) {
     const snow_volume *volume = slabs->volume;
     drop_present(slabs);
@@ -223,7 +217,10 @@ snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab) {
         *slab = slabs->slab;
     }
     slabs->next += slabs->falls ? -slabs->count : slabs->count;
-    note_mask(volume->stream, *slab);
+    snow_stream *stream = volume->stream;
+    stream->left = stream->left || !(*slab)->emptied;
+    stream->mask_range[0] = fmin(stream->mask_range[0], (*slab)->mask_range[0]);
+    stream->mask_range[1] = fmax(stream->mask_range[1], (*slab)->mask_range[1]);
     return SNOW_STATUS_OK;
 }
 

@@ -50,14 +50,6 @@ bool snow_volume_count(const int64_t dims[3], snow_type type, int64_t *voxels,
     return true;
 }
 
-/* The last row is checked too: every later stage takes it for 0 0 0 1. */
-static bool matrix_is_finite(const double m[4][4]) {
-    for (int i = 0; i < 16; i++)
-        if (!isfinite(m[i / 4][i % 4]))
-            return false;
-    return m[3][0] == 0 && m[3][1] == 0 && m[3][2] == 0 && m[3][3] == 1;
-}
-
 /* The farthest that a voxel may lie from the origin, and 1 by the shortest side
  * that it may have: squares of lengths are doubles. */
 #define FARTHEST 1e100
@@ -98,8 +90,12 @@ snow_status snow_volume_info_check(snow_context *context,
                          "file; check the sizes",
                          (long long)dims[0], (long long)dims[1],
                          (long long)dims[2]);
-    if (!matrix_is_finite(info->matrix) ||
-        !snow_matrix_invert3(info->matrix, inverse))
+    /* The last row is checked too: every later stage takes it for 0 0 0 1. */
+    const double(*m)[4] = info->matrix;
+    bool good = m[3][0] == 0 && m[3][1] == 0 && m[3][2] == 0 && m[3][3] == 1;
+    for (int i = 0; i < 16; i++)
+        good = good && isfinite(m[i / 4][i % 4]);
+    if (!good || !snow_matrix_invert3(info->matrix, inverse))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "invalid spacing or directions of the axes: zero, not "
                          "finite, or in one plane; correct them in the header");

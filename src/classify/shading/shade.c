@@ -37,26 +37,23 @@ static void add_distant(const snow_placement *placement, double azimuth,
     lights->share[lights->count++] = share;
 }
 
-static void add_head(const snow_placement *placement, double share,
-                     snow_lights *lights) {
-    memcpy(lights->to[lights->count], placement->back, sizeof lights->to[0]);
-    lights->head[lights->count] = true;
-    lights->share[lights->count++] = share;
-}
-
 snow_lights snow_lights_of(const snow_placement *placement,
                            const snow_settings *settings) {
     snow_lights lights = {0};
-    bool ahead = settings->light_azimuth == 0 && settings->light_elevation == 0;
-    if (settings->light == SNOW_LIGHT_KEY) {
+    const bool key = settings->light == SNOW_LIGHT_KEY;
+    const bool ahead =
+        settings->light == SNOW_LIGHT_HEAD ||
+        (settings->light_azimuth == 0 && settings->light_elevation == 0);
+    if (key)
         add_distant(placement, KEY_AZIMUTH, KEY_ELEVATION, KEY_SHARE, &lights);
-        add_head(placement, 1 - KEY_SHARE, &lights);
-    } else if (settings->light == SNOW_LIGHT_HEAD || ahead) {
-        add_head(placement, 1, &lights);
-    } else {
+    else if (!ahead)
         add_distant(placement, settings->light_azimuth,
                     settings->light_elevation, 1, &lights);
-    }
+    if (!key && !ahead)
+        return lights;
+    memcpy(lights.to[lights.count], placement->back, sizeof lights.to[0]);
+    lights.head[lights.count] = true;
+    lights.share[lights.count++] = key ? 1 - KEY_SHARE : 1;
     return lights;
 }
 
@@ -70,23 +67,19 @@ void snow_half_way(const double light[3], const double viewer[3],
         memset(half, 0, 3 * sizeof *half);
 }
 
-/* A shininess as a whole number if it is one up to 1024, else -1. */
-static int whole_shininess(double shininess) {
-    bool whole = shininess <= 1024 && shininess == floor(shininess);
-    return whole ? (int)shininess : -1;
-}
-
 snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
                              const snow_placement *placement,
                              const snow_settings *settings, snow_shader *out) {
+    const double shininess = settings->shininess;
+    const bool whole = shininess <= 1024 && shininess == floor(shininess);
     snow_shader shader = {
         .volume = volume,
         .placement = placement,
         .ambient = settings->ambient,
         .diffuse = settings->diffuse,
         .specular = settings->specular,
-        .shininess = settings->shininess,
-        .whole = whole_shininess(settings->shininess),
+        .shininess = shininess,
+        .whole = whole ? (int)shininess : -1,
         .isa = snow_isa_resolve(settings->isa),
         .lights = snow_lights_of(placement, settings),
     };

@@ -127,14 +127,6 @@ static bool is_steep(const snow_value_look *look) {
            steepest * STEEP_NODES * (look->scale.high - look->scale.low);
 }
 
-/* How much the look of a slab of one value changes from one to the other. */
-static double change(const double a[4], const double b[4]) {
-    double sum = 0;
-    for (int c = 0; c < 4; c++)
-        sum += (c == 3 ? 3 : 1) * fabs(b[c] - a[c]);
-    return sum;
-}
-
 /* The same from each V to the next; `until` is that up to V. */
 static double measure_changes(const snow_value_look *look,
                               const snow_value_table *table, double *until) {
@@ -146,7 +138,10 @@ static double measure_changes(const snow_value_look *look,
         double here[4] = {0, 0, 0, alphas[v % ALPHAS]};
         for (int c = 0; c < 3; c++)
             here[c] = (double)table->plain[3 * v * step + (size_t)c] * here[3];
-        total += until[v] = v ? change(before, here) : 0;
+        until[v] = 0; /* how much the look of a slab of one value changes */
+        for (int c = 0; c < 4 && v; c++)
+            until[v] += (c == 3 ? 3 : 1) * fabs(here[c] - before[c]);
+        total += until[v];
         memcpy(before, here, sizeof before);
     }
     return total;

@@ -94,11 +94,6 @@ static void find_outside(const snow_value_store *s,
         out[count / 64] &= ~UINT64_C(0) >> (64 - count % 64);
 }
 
-static bool is_same(const unsigned char *a, const unsigned char *b,
-                    int64_t size) {
-    return a[0] == b[0] && (size == 1 || a[1] == b[1]);
-}
-
 void snow_value_mark_stored(const snow_value_store *s,
                             const snow_value_store_params *params,
                             const snow_value_stored_range *range, int interval,
@@ -113,10 +108,12 @@ void snow_value_mark_stored(const snow_value_store *s,
     for (int end = 0; end < 2; end++) {
         int64_t column = end ? s->columns - 1 : 0, in = end ? -step : step;
         const unsigned char *side = stored + column * size;
-        if (is_same(side, side + in * size, size)
-                ? scratch[column / 64] >> column % 64 & 1
-                : is_beyond_outside(params->quantizer, stored, column, in,
-                                    s->intervals[interval])) {
+        const unsigned char *next = side + in * size;
+        const bool same =
+            side[0] == next[0] && (size == 1 || side[1] == next[1]);
+        if (same ? scratch[column / 64] >> column % 64 & 1
+                 : is_beyond_outside(params->quantizer, stored, column, in,
+                                     s->intervals[interval])) {
             /* Sets `count` bits, up to 31, from bit `first` on. */
             const size_t first = end ? (size_t)s->margin + count : 0;
             uint64_t some = ((UINT64_C(1) << s->margin) - 1) << first % 32;

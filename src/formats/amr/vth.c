@@ -108,14 +108,6 @@ static const snow_volume_info *of_level(const vth_file *f, int level,
     return NULL;
 }
 
-/* The ratio of two sizes of cells, 0 if it is no whole number. */
-static int64_t ratio_of(double coarse, double fine) {
-    const double ratio = coarse / fine;
-    return ratio >= 0.5 && ratio < 1024 && fabs(ratio - rint(ratio)) < NEAR
-               ? (int64_t)rint(ratio)
-               : 0;
-}
-
 static snow_status find_ratios(vth_file *f) {
     for (int l = 0; l < f->grid.levels; l++) {
         size_t number, below;
@@ -124,10 +116,12 @@ static snow_status find_ratios(vth_file *f) {
             return snow_fail(f->list.context, SNOW_STATUS_BAD_INPUT,
                              "has no files of level %d; write it again", l);
         for (int i = 0; i < 3; i++) {
-            f->grid.ratio[l][i] =
-                l ? ratio_of(of_level(f, l - 1, &below)->matrix[i][i],
-                             info->matrix[i][i])
-                  : 1;
+            const snow_volume_info *coarse =
+                l ? of_level(f, l - 1, &below) : info;
+            const double ratio = coarse->matrix[i][i] / info->matrix[i][i];
+            const bool whole = ratio >= 0.5 && ratio < 1024 &&
+                               fabs(ratio - rint(ratio)) < NEAR;
+            f->grid.ratio[l][i] = !l ? 1 : whole ? (int64_t)rint(ratio) : 0;
             if (!f->grid.ratio[l][i])
                 return fail_vth(
                     f, number,

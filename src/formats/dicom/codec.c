@@ -59,12 +59,6 @@ typedef struct jpeg_signs {
     bool transform;     /* Adobe's, with an unknown transform */
 } jpeg_signs;
 
-/* Adobe's transform is used if there are three components, and no JFIF that
- * defines them. */
-static bool warns(const jpeg_signs *signs, uint32_t samples) {
-    return signs->version || (signs->transform && samples == 3 && !signs->jfif);
-}
-
 /* Returns whether the segments are intact up to the start of the scan,
  * including Huffman tables if the frame needs them: otherwise GDCM ends the
  * process. JPEG-LS (`ls`) needs no tables, and does not use libjpeg. */
@@ -92,8 +86,11 @@ static bool has_scan(const unsigned char *bytes, size_t size, bool ls,
         tables |= marker == 0xc4;
         if (marker == 0xf7 && !ls)
             return false;
+        /* Adobe's transform is used if there are three components, and no JFIF
+         * that defines them. */
         if (marker == 0xda)
-            return ls || (tables && !warns(&signs, samples));
+            return ls || (tables && !signs.version &&
+                          !(signs.transform && samples == 3 && !signs.jfif));
         at += 2 + length;
     }
     return false;
@@ -158,16 +155,13 @@ static bool has_tile(const unsigned char *bytes, size_t size) {
     return false;
 }
 
-static bool is_jpeg2000(const char *syntax) {
-    return !strncmp(syntax, "1.2.840.10008.1.2.4.9", 21);
-}
-
 snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
                                     const dicom_image *image,
                                     const unsigned char **bytes, size_t *size) {
     packed_head head;
-    bool known = is_jpeg2000(syntax) ? read_jpeg2000(bytes, size, &head)
-                                     : read_jpeg(*bytes, *size, &head);
+    const bool jpeg2000 = !strncmp(syntax, "1.2.840.10008.1.2.4.9", 21);
+    bool known = jpeg2000 ? read_jpeg2000(bytes, size, &head)
+                          : read_jpeg(*bytes, *size, &head);
     bool same = known && head.columns == (uint32_t)image->columns &&
                 head.rows == (uint32_t)image->rows &&
                 head.samples == (uint32_t)image->samples &&
@@ -178,11 +172,11 @@ snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
             context, SNOW_STATUS_BAD_INPUT,
             "its compressed colours differ in size or depth, which is not "
             "supported; decompress it, for example with gdcmconv --raw");
-    if (same && (is_jpeg2000(syntax)
-                     ? has_tile(*bytes, *size)
-                     : has_scan(*bytes, *size,
-                                !strncmp(syntax, "1.2.840.10008.1.2.4.8", 21),
-                                head.samples)))
+    if (same &&
+        (jpeg2000 ? has_tile(*bytes, *size)
+                  : has_scan(*bytes, *size,
+                             !strncmp(syntax, "1.2.840.10008.1.2.4.8", 21),
+                             head.samples)))
         return SNOW_STATUS_OK;
     if (known && !same)
         return snow_fail(

@@ -65,13 +65,6 @@ static void free_collection(collection *c) {
     snow_release(c->context, c->frames);
 }
 
-static bool is_copy(const collection *c, const dicom_image *image) {
-    for (size_t i = 0; i < c->image_count && *image->instance; i++)
-        if (!strcmp(c->images[i]->instance, image->instance))
-            return true;
-    return false;
-}
-
 /* If `series` is given, images of others are left out. */
 static snow_status add_image(collection *c, dicom_reader *reader, char *path,
                              const char *series) {
@@ -81,10 +74,11 @@ static snow_status add_image(collection *c, dicom_reader *reader, char *path,
     SNOW_TRY(snow_dicom_read_image(c->context, reader, &image));
     if (!image.rows || (series && strcmp(image.series, series) != 0))
         return SNOW_STATUS_OK;
-    if (is_copy(c, &image)) {
-        c->copies++;
-        return SNOW_STATUS_OK;
-    }
+    for (size_t i = 0; i < c->image_count && *image.instance; i++)
+        if (!strcmp(c->images[i]->instance, image.instance)) {
+            c->copies++;
+            return SNOW_STATUS_OK;
+        }
     SNOW_TRY(SNOW_RESERVE(c->context, c->images, c->image_count,
                           c->image_count + 1));
     dicom_image *kept = snow_allocate(c->context, sizeof *kept);
@@ -130,14 +124,6 @@ static snow_status add_path(collection *c, char *path, const char *series) {
     return status;
 }
 
-/* Returns whether a file may be a slice, by its name: "IM_0004", "1.2.840.4",
- * "4.dcm". */
-static bool may_be_slice(const char *path) {
-    const char *dot = strrchr(snow_path_name(path), '.');
-    return !dot || (dot[1] >= '0' && dot[1] <= '9') ||
-           snow_format_has_name(&snow_format_dicom, path);
-}
-
 /* A file that is not DICOM, perhaps truncated, or that cannot be read. */
 static snow_status add_scrap(collection *c, const char *path,
                              snow_status status, size_t bytes) {
@@ -151,8 +137,11 @@ static snow_status add_scrap(collection *c, const char *path,
         snow_fail_in_file(c->context, status, path);
         return status;
     }
-    if ((status != SNOW_STATUS_OK || bytes < HEAD_BYTES) &&
-        may_be_slice(path) && !c->scraps++)
+    /* Its name may be that of a slice: "IM_0004", "1.2.840.4", "4.dcm". */
+    const char *dot = strrchr(snow_path_name(path), '.');
+    const bool may_be = !dot || (dot[1] >= '0' && dot[1] <= '9');
+    if ((status != SNOW_STATUS_OK || bytes < HEAD_BYTES) && may_be &&
+        !c->scraps++)
         c->scrap = snow_path_name(path);
     return SNOW_STATUS_OK;
 }

@@ -106,17 +106,12 @@ static void fill_matrix(dicom_stack *s, const double step[3]) {
         snow_image_turn(s->matrix);
 }
 
-/* A single slice has its given depth: there is no other to measure from. */
-static double lone_depth(const dicom_frame *frame) {
-    double depth = fabs(frame->depth);
-    return depth > 0 ? depth : frame->thickness;
-}
-
 static void step_of_slices(dicom_stack *s, const double normal[3],
                            double step[3]) {
     if (s->places == 1 || !s->placed) {
-        double depth =
-            s->places == 1 ? lone_depth(s->frames) : fabs(s->frames->depth);
+        double depth = fabs(s->frames->depth);
+        if (s->places == 1 && !(depth > 0)) /* there is no other */
+            depth = s->frames->thickness;
         s->given = depth > 0;
         s->gap = s->given ? depth : 1;
         for (int i = 0; i < 3; i++)

@@ -9,6 +9,7 @@
  * brightness; of YBR_FULL the first sample is the brightness.
  *
  * A file stays open until another is needed. */
+#include "base/minmax.h"
 #include "formats/dicom/dicom.h"
 
 #include "formats/array.h"
@@ -83,12 +84,6 @@ typedef struct bits {
     int shift;
 } bits;
 
-static double value_of(uint32_t word, bits b) {
-    int64_t value = word >> b.shift & b.mask;
-    return (double)(b.sign ? (value ^ (int64_t)b.sign) - (int64_t)b.sign
-                           : value);
-}
-
 static uint32_t word_at(const unsigned char *at, int size) {
     uint16_t s;
     uint32_t l;
@@ -102,22 +97,6 @@ static uint32_t word_at(const unsigned char *at, int size) {
     return l;
 }
 
-/* Padding may lie outside the range of the stored bits: then the whole word is
- * compared with the header. */
-static bool is_padding(const dicom_image *image, double value, uint32_t word,
-                       int size) {
-    if (value >= image->padding[0] && value <= image->padding[1])
-        return true;
-    return size == 2 && word == (uint16_t)(int32_t)image->padding[0];
-}
-
-static double brightness_of(const dicom_palette *palette, double value) {
-    double at = value - (double)palette->first;
-    double last = (double)(palette->count - 1);
-    at = at > 0 ? (at < last ? at : last) : 0;
-    return (double)palette->levels[(size_t)at];
-}
-
 /* Reads a row of the box from its first word on; words are `step` bytes
  * apart. */
 static void take_row(const decoder *d, const dicom_frame *frame,
@@ -128,17 +107,27 @@ static void take_row(const decoder *d, const dicom_frame *frame,
     bits b = (bits){mask, d->words.is_signed ? mask ^ mask >> 1 : 0,
                     d->words.high + 1 - d->words.stored};
     int size = d->words.size;
+    /* Padding may lie outside the range of the stored bits: then the whole word
+     * is compared with the header. */
     bool pads = frame->image->pads;
+    const double *padding = frame->image->padding;
     double slope = d->scales ? frame->slope : 1;
     double intercept = d->scales ? frame->intercept : 0;
     for (int64_t x = 0; x < d->window->count[0]; x++, at += step) {
         uint32_t word = word_at(at, size);
-        double value = value_of(word, b);
-        if (pads && is_padding(frame->image, value, word, size))
+        int64_t bits_of = word >> b.shift & b.mask;
+        if (b.sign)
+            bits_of = (bits_of ^ (int64_t)b.sign) - (int64_t)b.sign;
+        double value = (double)bits_of;
+        if (pads && ((value >= padding[0] && value <= padding[1]) ||
+                     (size == 2 && word == (uint16_t)(int32_t)padding[0])))
             out[x] = NAN;
-        else if (d->palette.levels)
-            out[x] = brightness_of(&d->palette, value);
-        else
+        else if (d->palette.levels) {
+            double place = value - (double)d->palette.first;
+            double last = (double)(d->palette.count - 1);
+            place = place > 0 ? SNOW_MIN(place, last) : 0;
+            out[x] = (double)d->palette.levels[(size_t)place];
+        } else
             out[x] = slope * value + intercept;
     }
 }
@@ -229,14 +218,6 @@ static bool store_values(snow_type type, const double *values, size_t count,
     }
 }
 
-/* Interpolates linearly between two positions; a missing value stays
- * missing. */
-static void blend(const double *low, const double *high, double weight,
-                  size_t count, double *out) {
-    for (size_t i = 0; i < count; i++)
-        out[i] = (1 - weight) * low[i] + weight * high[i];
-}
-
 /* Makes slice `z` of the whole volume. */
 static snow_status fill_slice(decoder *d, const dicom_stack *stack, int64_t z,
                               snow_volume *volume, double *mixed, void *to) {
@@ -254,8 +235,9 @@ static snow_status fill_slice(decoder *d, const dicom_stack *stack, int64_t z,
     values = low ? low : high ? high : mixed;
     for (size_t i = 0; values == mixed && i < count; i++)
         mixed[i] = NAN; /* the slice is missing */
-    if (low && high) {
-        blend(low, high, slice.weight, count, mixed);
+    if (low && high) {  /* a missing value stays missing */
+        for (size_t i = 0; i < count; i++)
+            mixed[i] = (1 - slice.weight) * low[i] + slice.weight * high[i];
         values = mixed;
     }
     if (!store_values(volume->info.type, values, count, to))

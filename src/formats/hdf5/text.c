@@ -121,12 +121,6 @@ static size_t padded(const unsigned char *message, size_t bytes) {
     return message[0] == 1 ? (bytes + 7) / 8 * 8 : bytes;
 }
 
-/* Returns whether a datatype is text of variable length, class 9 of type 1. */
-static bool is_text(const unsigned char *type, size_t bytes) {
-    return bytes >= 8 && (type[0] & 15) == 9 && (type[1] & 15) == 1 &&
-           number(type + 4, 4) == 16;
-}
-
 /* The text of an attribute message, if that has the name. */
 static bool read_attribute(const search *s, size_t size) {
     const unsigned char *m = s->message;
@@ -137,9 +131,13 @@ static bool read_attribute(const search *s, size_t size) {
     size_t space = (size_t)number(m + 6, 2);
     size_t type_at = head + padded(m, name);
     size_t at = type_at + padded(m, type) + padded(m, space) + 16 * s->index;
-    return name == wanted && head + name <= size &&
-           !memcmp(m + head, s->name, wanted) && at + 16 <= size &&
-           is_text(m + type_at, type) && read_object(s, m + at);
+    if (name != wanted || head + name > size ||
+        memcmp(m + head, s->name, wanted) != 0 || at + 16 > size)
+        return false;
+    /* text of variable length, class 9 of type 1 */
+    const unsigned char *t = m + type_at;
+    return type >= 8 && (t[0] & 15) == 9 && (t[1] & 15) == 1 &&
+           number(t + 4, 4) == 16 && read_object(s, m + at);
 }
 
 /* Reads the message whose head is at `*at`, and passes it. */

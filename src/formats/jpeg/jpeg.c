@@ -132,14 +132,6 @@ static snow_status refuse_fault(const jpeg_reader *reader) {
 
 /* --- header --------------------------------------------------------------- */
 
-/* Not above what the context has left; 0 would mean no limit. */
-static long most_memory(const snow_context *context) {
-    uint64_t held = snow_context_bytes(context);
-    if (!context->limit || context->limit >= held + SNOW_JPEG_COEFFICIENT_BYTES)
-        return SNOW_JPEG_COEFFICIENT_BYTES;
-    return context->limit > held ? (long)(context->limit - held) : 1;
-}
-
 /* Every failure of libjpeg returns here or in decode, once. */
 static snow_status read_header(jpeg_reader *reader) {
     if (setjmp(reader->fault.out))
@@ -218,7 +210,14 @@ static snow_status decode(jpeg_reader *reader, int64_t channel,
     struct jpeg_decompress_struct *info = &reader->info;
     if (setjmp(reader->fault.out))
         return refuse_fault(reader);
-    info->mem->max_memory_to_use = most_memory(reader->context);
+    /* Not above what the context has left; 0 would mean no limit. */
+    const uint64_t limit = reader->context->limit;
+    const uint64_t held = snow_context_bytes(reader->context);
+    info->mem->max_memory_to_use =
+        !limit || limit >= held + SNOW_JPEG_COEFFICIENT_BYTES
+            ? SNOW_JPEG_COEFFICIENT_BYTES
+        : limit > held ? (long)(limit - held)
+                       : 1;
     info->out_color_space =
         info->jpeg_color_space == JCS_GRAYSCALE ? JCS_GRAYSCALE : JCS_RGB;
     info->dct_method = JDCT_ISLOW; /* the same values on every machine */

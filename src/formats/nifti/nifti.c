@@ -176,11 +176,6 @@ static snow_status read_image(snow_source *image,
     return read_voxels(image, &header, options, 0, info, out);
 }
 
-/* The voxels of a pair have no magic, so only the name identifies them. */
-static bool is_image_name(const char *name) {
-    return snow_has_suffix(name, ".img") || snow_has_suffix(name, ".img.gz");
-}
-
 /* Bytes have priority over names: an .img file that begins with a header is
  * read as such. */
 static snow_status read_nifti(snow_source *source,
@@ -191,7 +186,9 @@ static snow_status read_nifti(snow_source *source,
     nifti_header header;
     uint64_t taken;
     SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &size));
-    if (is_image_name(snow_source_name(source)) &&
+    /* The voxels of a pair have no magic, so only the name identifies them. */
+    const char *name = snow_source_name(source);
+    if ((snow_has_suffix(name, ".img") || snow_has_suffix(name, ".img.gz")) &&
         !nifti_header_size(bytes, size))
         return read_image(source, options, info, out);
     SNOW_TRY(read_header(source, &header, &taken));

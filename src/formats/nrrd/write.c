@@ -19,15 +19,6 @@ static const char *type_name(snow_type type) {
     }
 }
 
-/* "(x,y,z)" of one column of the matrix. */
-static int print_vector(char *text, size_t capacity, const double m[4][4],
-                        int column) {
-    const double vector[3] = {m[0][column], m[1][column], m[2][column]};
-    text[0] = '(';
-    int used = 1 + snow_print_numbers(text + 1, capacity - 1, vector, 3, ",");
-    return used + snprintf(text + used, capacity - (size_t)used, ")");
-}
-
 /* Space directions and origin; the caller's buffer is large enough. */
 static int print_geometry(char *text, size_t capacity,
                           const snow_volume_info *info) {
@@ -36,10 +27,13 @@ static int print_geometry(char *text, size_t capacity,
         snprintf(text, capacity, "space%s\nspace directions:",
                  info->medical ? ": right-anterior-superior" : " dimension: 3");
     for (int j = 0; j < 4; j++) {
+        const double vector[3] = {info->matrix[0][j], info->matrix[1][j],
+                                  info->matrix[2][j]};
         used += snprintf(text + used, capacity - (size_t)used, "%s",
-                         j < 3 ? " " : "\nspace origin: ");
-        used +=
-            print_vector(text + used, capacity - (size_t)used, info->matrix, j);
+                         j < 3 ? " (" : "\nspace origin: (");
+        used += snow_print_numbers(text + used, capacity - (size_t)used, vector,
+                                   3, ",");
+        used += snprintf(text + used, capacity - (size_t)used, ")");
     }
     used += snprintf(text + used, capacity - (size_t)used, "\n");
     if (*unit && !strpbrk(unit, "\"\\\r\n"))

@@ -48,15 +48,6 @@ static bool parse_type(uint16_t bits, uint16_t format, tiff_page *page) {
     return page->type != SNOW_TYPE_NONE;
 }
 
-/* Subsampled or logarithmic colours are not the values of a volume.  JPEG
- * colours are converted to RGB. */
-static bool has_values(TIFF *tiff, uint16_t photometric, uint16_t compression) {
-    if (photometric == PHOTOMETRIC_YCBCR && compression == COMPRESSION_JPEG)
-        return TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
-    return photometric != PHOTOMETRIC_YCBCR &&
-           photometric != PHOTOMETRIC_LOGL && photometric != PHOTOMETRIC_LOGLUV;
-}
-
 static uint16_t short_field(TIFF *tiff, uint32_t tag) {
     uint16_t value = 0;
     return TIFFGetFieldDefaulted(tiff, tag, &value) ? value : 0;
@@ -87,8 +78,14 @@ snow_status snow_tiff_describe(snow_tiff *file, tiff_page *out) {
         return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
                          "its pages have no valid size or depth for slices; "
                          "write it again with one slice per page");
-    if (!has_values(tiff, short_field(tiff, TIFFTAG_PHOTOMETRIC),
-                    page.compression))
+    /* Subsampled or logarithmic colours are not the values of a volume.  JPEG
+     * colours are converted to RGB. */
+    const uint16_t colors = short_field(tiff, TIFFTAG_PHOTOMETRIC);
+    bool good = colors != PHOTOMETRIC_YCBCR && colors != PHOTOMETRIC_LOGL &&
+                colors != PHOTOMETRIC_LOGLUV;
+    if (colors == PHOTOMETRIC_YCBCR && page.compression == COMPRESSION_JPEG)
+        good = TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
+    if (!good)
         return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
                          "its colours are stored as luminance and chrominance; "
                          "write it again as grey or RGB");
@@ -124,14 +121,6 @@ typedef struct tiff_block {
     int64_t samples;
     uint64_t row_bytes;
 } tiff_block;
-
-static void put_bits(const unsigned char *row, uint64_t first, uint64_t step,
-                     int64_t count, unsigned char *out) {
-    for (int64_t i = 0; i < count; i++) {
-        uint64_t bit = first + (uint64_t)i * step;
-        out[i] = row[bit / 8] >> (7 - bit % 8) & 1;
-    }
-}
 
 /* In the machine's byte order, as from libtiff, and sign extended. */
 static void put_triple(const unsigned char *at, bool is_signed,
@@ -169,7 +158,10 @@ static void put_row(const tiff_page *page, const tiff_block *block,
     size_t size = page->bits / 8, wide = snow_type_size(page->type);
     uint64_t at = (uint64_t)(first * block->samples + sample);
     if (page->coding == TIFF_BIT) {
-        put_bits(row, at, (uint64_t)block->samples, count, out);
+        for (int64_t i = 0; i < count; i++) {
+            uint64_t bit = at + (uint64_t)(i * block->samples);
+            out[i] = row[bit / 8] >> (7 - bit % 8) & 1;
+        }
         return;
     }
     row += at * size;

@@ -148,12 +148,6 @@ static void read_ome_spacing(const char *pixels, tiff_shape *out) {
     }
 }
 
-/* An order has five letters, X and Y first. */
-static bool is_order(const char *text) {
-    return strlen(text) == 5 && !strncmp(text, "XY", 2) && strchr(text, 'C') &&
-           strchr(text, 'Z') && strchr(text, 'T');
-}
-
 /* A colour is red, green, blue and alpha, the bytes of a number with a sign. */
 static void read_ome_channel(const char *text, snow_channel *out) {
     char value[VALUE_BYTES];
@@ -187,7 +181,10 @@ static void read_ome(const char *pixels, tiff_shape *out) {
         out->slices = count_of(value);
     if (attribute(pixels, "SizeT", value))
         out->frames = count_of(value);
-    if (attribute(pixels, "DimensionOrder", value) && is_order(value))
+    /* An order has five letters, X and Y first. */
+    if (attribute(pixels, "DimensionOrder", value) && strlen(value) == 5 &&
+        !strncmp(value, "XY", 2) && strchr(value, 'C') && strchr(value, 'Z') &&
+        strchr(value, 'T'))
         memcpy(out->order, value, sizeof out->order);
     else
         memcpy(out->order, "XYCZT", sizeof out->order);

@@ -29,13 +29,6 @@ typedef struct tiff_plan {
     int64_t channels, slices, times;
 } tiff_plan;
 
-/* Returns whether the page is a thumbnail of another. */
-static bool is_reduced(TIFF *tiff) {
-    uint32_t kind = 0;
-    TIFFGetFieldDefaulted(tiff, TIFFTAG_SUBFILETYPE, &kind);
-    return (kind & FILETYPE_REDUCEDIMAGE) != 0;
-}
-
 static bool same_page(const tiff_page *a, const tiff_page *b) {
     return a->width == b->width && a->height == b->height &&
            a->samples == b->samples && a->type == b->type &&
@@ -46,12 +39,14 @@ static bool same_page(const tiff_page *a, const tiff_page *b) {
  * result does not distinguish an end from a damaged page; libtiff's error
  * does. */
 static snow_status next_page(snow_tiff *file, bool *got) {
-    do {
+    uint32_t kind = 0;
+    do { /* past thumbnails of others */
         *file->complaint = 0;
         *got = TIFFReadDirectory(file->tiff) != 0;
         if (!*got)
             return *file->complaint ? snow_tiff_fail(file) : SNOW_STATUS_OK;
-    } while (is_reduced(file->tiff));
+        TIFFGetFieldDefaulted(file->tiff, TIFFTAG_SUBFILETYPE, &kind);
+    } while (kind & FILETYPE_REDUCEDIMAGE);
     return SNOW_STATUS_OK;
 }
 

@@ -205,13 +205,6 @@ typedef struct resampling {
     double *rows; /* two rows of the file's box, one of the result */
 } resampling;
 
-/* A row of the file's box at y and z. */
-static void take_row(const resampling *r, int64_t y, int64_t z, double *out) {
-    const int64_t *dims = r->from->info.dims;
-    snow_volume_stored(r->from, (z * dims[1] + y) * dims[0], (size_t)dims[0],
-                       out);
-}
-
 /* Blends a row into another one. */
 static void blend_rows(double *low, const double *high, double up,
                        int64_t count) {
@@ -222,10 +215,12 @@ static void blend_rows(double *low, const double *high, double up,
 /* The row at a place along y, and z as in the file. */
 static void row_along_y(const resampling *r, place y, int64_t z, double *out,
                         double *beside) {
-    take_row(r, y.low, z, out);
+    const int64_t *dims = r->from->info.dims;
+    const int64_t first = (z * dims[1] + y.low) * dims[0];
+    snow_volume_stored(r->from, first, (size_t)dims[0], out);
     if (y.up > 0) {
-        take_row(r, y.low + 1, z, beside);
-        blend_rows(out, beside, y.up, r->from->info.dims[0]);
+        snow_volume_stored(r->from, first + dims[0], (size_t)dims[0], beside);
+        blend_rows(out, beside, y.up, dims[0]);
     }
 }
 

@@ -49,18 +49,18 @@ static uint64_t position(const survey *s) {
            (uint64_t)XML_GetCurrentByteCount(s->parser);
 }
 
-static void keep(const survey *s, const char **attributes, small_array *out) {
+static void take_array(survey *s, const char **attributes) {
+    const char *name = snow_vti_attribute(attributes, "Name");
+    small_array *out = NULL;
+    if (s->coordinates && s->axes < 3)
+        out = &s->axis[s->axes++];
+    else if (s->fields && name && !strcmp(name, "TimeValue"))
+        out = &s->time;
+    if (!out)
+        return;
     out->header = s->file;
     out->found = snow_vti_keep_array(&out->header, attributes, "", false);
     out->at = position(s);
-}
-
-static void take_array(survey *s, const char **attributes) {
-    const char *name = snow_vti_attribute(attributes, "Name");
-    if (s->coordinates && s->axes < 3)
-        keep(s, attributes, &s->axis[s->axes++]);
-    else if (s->fields && name && !strcmp(name, "TimeValue"))
-        keep(s, attributes, &s->time);
 }
 
 static void XMLCALL begin_element(void *user, const char *name,

@@ -94,13 +94,6 @@ static snow_status fail_line(const vtk_reader *reader) {
         reader->count > 1 ? reader->words[1] : "");
 }
 
-static bool take_reals(const vtk_reader *reader, double out[3]) {
-    bool right = reader->count >= 4;
-    for (int i = 0; i < 3 && right; i++)
-        right = snow_parse_double(reader->words[1 + i], &out[i]);
-    return right;
-}
-
 /* Names of scalar types; "long" has 8 bytes, as on all systems but Windows. */
 static snow_type type_named(const char *name) {
     static const struct {
@@ -382,10 +375,14 @@ static bool take_geometry(vtk_reader *reader) {
                 snow_parse_int64(reader->words[1 + i], &reader->grid.points[i]);
         return right;
     }
-    if (starts(reader, "ORIGIN", 4))
-        return take_reals(reader, reader->grid.origin);
-    if (starts(reader, "SPACING", 4) || starts(reader, "ASPECT_RATIO", 4)) {
-        return take_reals(reader, reader->grid.spacing);
+    const bool origin = starts(reader, "ORIGIN", 4);
+    if (origin || starts(reader, "SPACING", 4) ||
+        starts(reader, "ASPECT_RATIO", 4)) {
+        double *out = origin ? reader->grid.origin : reader->grid.spacing;
+        bool right = reader->count >= 4;
+        for (int i = 0; i < 3 && right; i++)
+            right = snow_parse_double(reader->words[1 + i], &out[i]);
+        return right;
     }
     bool cells = starts(reader, "CELL_DATA", 2);
     if (!cells && !starts(reader, "POINT_DATA", 2))

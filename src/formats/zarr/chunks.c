@@ -252,13 +252,6 @@ static snow_status read_chunk(filler *f, const zarr_file *file, uint64_t first,
     return SNOW_STATUS_OK;
 }
 
-static uint64_t load_place(const unsigned char *at) {
-    uint64_t value = 0;
-    for (int i = 0; i < 8; i++)
-        value |= (uint64_t)at[i] << (8 * i);
-    return value;
-}
-
 /* The index entry of a chunk, in "C" order. */
 static uint64_t entry_of(const zarr_array *array, const int64_t *chunk) {
     uint64_t entry = 0;
@@ -303,8 +296,11 @@ static snow_status take_chunk(filler *f, const zarr_file *file,
     f->chunks++;
     if (is_there && array->sharded) {
         const unsigned char *entry = f->index + 16 * entry_of(array, chunk);
-        first = load_place(entry);
-        size = load_place(entry + 8);
+        first = size = 0;
+        for (int i = 0; i < 8; i++) {
+            first |= (uint64_t)entry[i] << (8 * i);
+            size |= (uint64_t)entry[8 + i] << (8 * i);
+        }
         is_there = first != UINT64_MAX || size != UINT64_MAX;
         if (is_there && (first > file->size || size > file->size - first))
             return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,

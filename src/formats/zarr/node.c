@@ -22,15 +22,6 @@ snow_status snow_zarr_fail(const zarr_store *store, const char *path,
                      *store->folder || *path ? ": " : "", text);
 }
 
-/* jansson reads integers above INT64_MAX, for example fill values of uint64,
- * only as real numbers, and only on request. */
-static json_t *parse_json(const char *text, size_t size, json_error_t *error) {
-    json_t *tree = json_loadb(text, size, 0, error);
-    if (!tree && json_error_code(error) == json_error_numeric_overflow)
-        tree = json_loadb(text, size, JSON_DECODE_INT_AS_REAL, error);
-    return tree;
-}
-
 static snow_status parse_file(const zarr_store *store, const zarr_file *file,
                               json_t **out) {
     if (file->size > MOST_JSON_BYTES)
@@ -46,7 +37,13 @@ static snow_status parse_file(const zarr_store *store, const zarr_file *file,
         snow_zarr_read(file, 0, (unsigned char *)text, (size_t)file->size);
     json_t *tree = NULL;
     if (status == SNOW_STATUS_OK)
-        tree = parse_json(text, (size_t)file->size, &error);
+        tree = json_loadb(text, (size_t)file->size, 0, &error);
+    /* jansson reads integers above INT64_MAX, for example fill values of
+     * uint64, only as real numbers, and only on request. */
+    if (status == SNOW_STATUS_OK && !tree &&
+        json_error_code(&error) == json_error_numeric_overflow)
+        tree = json_loadb(text, (size_t)file->size, JSON_DECODE_INT_AS_REAL,
+                          &error);
     snow_release(store->context, text);
     if (status == SNOW_STATUS_OK && !json_is_object(tree)) {
         status = snow_fail(store->context, SNOW_STATUS_BAD_INPUT,

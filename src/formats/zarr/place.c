@@ -113,13 +113,6 @@ static snow_status assign_image(const zarr_store *store, zarr_found *found,
     return SNOW_STATUS_OK;
 }
 
-static bool has_role(const zarr_roles *roles, int axis) {
-    for (int role = 0; role < ZARR_ROLES; role++)
-        if (roles->axis[role] == axis)
-            return true;
-    return false;
-}
-
 snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
                              zarr_roles *out) {
     zarr_array *array = &found->array;
@@ -127,8 +120,11 @@ snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
         SNOW_TRY(assign_image(store, found, out));
     else if (!assign_names(array, out))
         assign_places(array, out);
-    for (int i = 0; i < array->axes; i++)
-        if (!has_role(out, i) && array->sizes[i] > 1)
+    for (int i = 0; i < array->axes; i++) {
+        bool used = false;
+        for (int role = 0; role < ZARR_ROLES; role++)
+            used |= out->axis[role] == i;
+        if (!used && array->sizes[i] > 1)
             return snow_zarr_fail(store, array->path,
                                   "has %lld entries along axis %d%s%s%s, which "
                                   "no option selects; save a part of the array "
@@ -136,6 +132,7 @@ snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
                                   (long long)array->sizes[i], i,
                                   *array->names[i] ? " (" : "", array->names[i],
                                   *array->names[i] ? ")" : "");
+    }
     for (int role = 0; role < ZARR_ROLES; role++)
         if (out->axis[role] >= 0 && !*array->names[out->axis[role]])
             snprintf(array->names[out->axis[role]], ZARR_NAME_BYTES, "%c",

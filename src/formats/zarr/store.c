@@ -162,13 +162,6 @@ static snow_status add_name(const zarr_store *store, name_list *list,
     return SNOW_STATUS_OK;
 }
 
-static bool is_listed(const name_list *list, const char *name, size_t letters) {
-    for (size_t i = 0; i < list->count; i++)
-        if (!strncmp(list->names[i], name, letters) && !list->names[i][letters])
-            return true;
-    return false;
-}
-
 /* Folders are not stored: they are prefixes of names. */
 static snow_status list_records(const zarr_store *store, const char *path,
                                 name_list *list) {
@@ -181,8 +174,13 @@ static snow_status list_records(const zarr_store *store, const char *path,
             continue;
         const char *slash = memchr(r.name + skip, '/', r.letters - skip);
         size_t letters = slash ? (size_t)(slash - r.name) - skip : 0;
-        if (!is_listed(list, r.name + skip, letters))
-            SNOW_TRY(add_name(store, list, r.name + skip, letters));
+        const char *name = r.name + skip;
+        size_t n = 0;
+        while (n < list->count && (strncmp(list->names[n], name, letters) ||
+                                   list->names[n][letters]))
+            n++;
+        if (n == list->count)
+            SNOW_TRY(add_name(store, list, name, letters));
     }
     return SNOW_STATUS_OK;
 }

@@ -220,20 +220,14 @@ static snow_status undo_shuffle(snow_context *context, size_t width,
     return SNOW_STATUS_OK;
 }
 
-static uint64_t load_whole(const unsigned char *at, size_t width, bool big) {
-    uint64_t value = 0;
-    for (size_t i = 0; i < width; i++)
-        value |= (uint64_t)at[big ? width - 1 - i : i] << (8 * i);
-    return value;
-}
-
 /* Each value but the first is stored as the difference to the one before it,
  * modulo the range of the type. */
 static void undo_delta(size_t width, bool big, unsigned char *values,
                        uint64_t bytes) {
     uint64_t sum = 0;
     for (uint64_t i = 0; i + width <= bytes; i += width) {
-        sum += load_whole(values + i, width, big);
+        for (size_t k = 0; k < width; k++)
+            sum += (uint64_t)values[i + (big ? width - 1 - k : k)] << (8 * k);
         for (size_t k = 0; k < width; k++)
             values[i + (big ? width - 1 - k : k)] =
                 (unsigned char)(sum >> (8 * k));

@@ -12,6 +12,7 @@
  * and composite: each walks all slices front to back for its band, so that no
  * two write one pixel.  Every pixel is made by the same operations in the same
  * order however bands are cut: the number of threads cannot change a bit. */
+#include "base/minmax.h"
 #include "render/modes/depth.h"
 #include "render/picture.h"
 #include "render/tested.h"
@@ -103,10 +104,6 @@ static snow_status more_records(snow_context *context, void *array_pointer,
     return SNOW_STATUS_OK;
 }
 
-static int64_t smaller(int64_t a, int64_t b) {
-    return a < b ? a : b;
-}
-
 static int64_t parts_of(int64_t whole, int64_t part) {
     return (whole + part - 1) / part;
 }
@@ -118,10 +115,10 @@ static void cut(snow_footprint_buffers *buffers, const snow_job *job) {
     buffers->groups_used = parts_of(job->stored_slab.count, GROUP_SLICES);
     buffers->bands = 1;
     if (threads > 1)
-        buffers->bands = (int)smaller(BANDS_PER_THREAD * threads, p->height);
+        buffers->bands = (int)SNOW_MIN(BANDS_PER_THREAD * threads, p->height);
     int64_t most = buffers->bands > buffers->groups_used ? buffers->bands
                                                          : buffers->groups_used;
-    buffers->threads = (int)smaller(threads, most);
+    buffers->threads = (int)SNOW_MIN(threads, most);
 }
 
 static snow_status prepare_splatter(snow_context *context, const snow_job *job,
@@ -257,7 +254,7 @@ static void classify_and_shade(const pass *work, worker *w, int64_t slice,
     const snow_footprint_buffers *buffers = work->buffers;
     double mark = snow_seconds();
     snow_classify_row_block(&buffers->classifier, &work->job->stored, slice,
-                            row, smaller(rows, w->row_block.room_rows),
+                            row, SNOW_MIN(rows, w->row_block.room_rows),
                             &w->row_block);
     snow_lap(&mark, &w->seconds[CLASSIFY]);
     if (work->job->settings.shade == SNOW_SHADE_PHONG)
@@ -323,7 +320,7 @@ static snow_status encode_group(const pass *work, int64_t group, worker *w) {
     SNOW_TRY(snow_sparse_begin(sparse, snow_scheme_of(work->encoding),
                                &job->stored, job->channels));
     int64_t first = group * GROUP_SLICES;
-    int64_t end = smaller(first + GROUP_SLICES, job->stored_slab.count);
+    int64_t end = SNOW_MIN(first + GROUP_SLICES, job->stored_slab.count);
     for (int64_t n = first; n < end; n++)
         SNOW_TRY(encode_slice(work, w, sparse, job->stored_slab.first + n));
     return SNOW_STATUS_OK;
@@ -334,22 +331,6 @@ static void encode_item(void *data, int64_t item, int number) {
     worker *w = &work->buffers->workers[number];
     if (w->status == SNOW_STATUS_OK)
         w->status = encode_group(work, item, w);
-}
-
-/* Sets a walk to the beginning of a slice of the volume. */
-static void walk_slice(const pass *work, int64_t slice, snow_walk *walk) {
-    int64_t n = slice - work->job->stored_slab.first;
-    snow_walk_begin(walk, &work->buffers->groups[n / GROUP_SLICES],
-                    n % GROUP_SLICES);
-}
-
-/* The next row of a walk: its spans go to the worker, its samples are
- * returned. */
-static const float *walk_row(const pass *work, snow_walk *walk, worker *w,
-                             size_t *spans) {
-    size_t voxel;
-    *spans = snow_walk_row(walk, w->spans, &voxel);
-    return walk->sparse->ia + voxel * (size_t)work->job->channels;
 }
 
 /* --- scattering footprints ------------------------------------------------ */
@@ -378,10 +359,13 @@ static void scatter_encoded(const pass *work, worker *w, int64_t slice,
                             int64_t first, int64_t end) {
     double mark = snow_seconds();
     snow_walk walk;
-    walk_slice(work, slice, &walk);
+    const int64_t n = slice - work->job->stored_slab.first;
+    snow_walk_begin(&walk, &work->buffers->groups[n / GROUP_SLICES],
+                    n % GROUP_SLICES);
     for (int64_t row = 0; row < end && !stops(work, w); row++) {
-        size_t spans;
-        const float *samples = walk_row(work, &walk, w, &spans);
+        size_t voxel, spans = snow_walk_row(&walk, w->spans, &voxel);
+        const float *samples =
+            walk.sparse->ia + voxel * (size_t)work->job->channels;
         if (row >= first)
             splat_row(work, w, row, spans, samples);
     }
@@ -492,7 +476,7 @@ static void count_item(void *data, int64_t item, int number) {
     for (int64_t row = 0; row < p->rows; row += w->row_block.room_rows) {
         snow_classify_row_block(
             &buffers->classifier, p, work->job->stored_slab.first + item, row,
-            smaller(p->rows - row, w->row_block.room_rows), &w->row_block);
+            SNOW_MIN(p->rows - row, w->row_block.room_rows), &w->row_block);
         w->kept += (int64_t)w->row_block.count;
     }
 }

@@ -254,16 +254,13 @@ static void darken_pixels(const occlusion *o, snow_image *image) {
     }
 }
 
-/* How many pixels wide a voxel is. */
-static double voxel_pixels(const occlusion *o) {
-    return fmin(o->spacing[0], fmin(o->spacing[1], o->spacing[2])) /
-           o->job->placement.pitch;
-}
-
 static snow_status darken(const snow_picture *p, occlusion *o) {
     snow_context *context = o->job->context;
     const int width = p->view.width, height = p->view.height;
     const size_t pixels = (size_t)width * (size_t)height;
+    const double voxel = /* its pixels */
+        fmin(o->spacing[0], fmin(o->spacing[1], o->spacing[2])) /
+        o->job->placement.pitch;
     const size_t count = (size_t)(o->dims[0] * o->dims[1] * o->dims[2]);
     if (!p->image || !p->depth)
         return SNOW_STATUS_OK;
@@ -283,7 +280,7 @@ static snow_status darken(const snow_picture *p, occlusion *o) {
     }
     if (status == SNOW_STATUS_OK)
         status = snow_blur_plane(context, o->open, o->open + pixels, width,
-                                 height, voxel_pixels(o));
+                                 height, voxel);
     if (status == SNOW_STATUS_OK)
         darken_pixels(o, p->image);
     snow_release(context, scratch);

@@ -56,15 +56,6 @@ void snow_raycast_see_look(snow_raycast_pass *pass) {
 
 /* --- compositing ---------------------------------------------------------- */
 
-/* Opacity grows within a step as that of even matter does. */
-static void note_depth(const snow_raycast_pass *pass, const snow_ray *ray,
-                       double before, double alpha, double t, float *depth) {
-    double share = 0;
-    if (alpha < 1)
-        share = snow_log(0.5 / (1 - before)) / snow_log(1 - alpha);
-    *depth = snow_raycast_depth(pass, ray, t + (share - 0.5) * ray->step);
-}
-
 /* The group that is gathered. */
 static void composite(int last, over_state *state) {
     const double through = 1 - state->pixel[last];
@@ -89,8 +80,14 @@ static void gather(const snow_raycast_pass *pass, const snow_ray *ray,
     if (!state->batch.own[n])
         return;
     state->opaque += (1 - before) * alpha;
-    if (state->depth && before < 0.5 && state->opaque >= 0.5)
-        note_depth(pass, ray, before, alpha, state->batch.t[n], state->depth);
+    if (!state->depth || before >= 0.5 || state->opaque < 0.5)
+        return;
+    /* Opacity grows within a step as that of even matter does. */
+    double share = 0;
+    if (alpha < 1)
+        share = snow_log(0.5 / (1 - before)) / snow_log(1 - alpha);
+    *state->depth = snow_raycast_depth(
+        pass, ray, state->batch.t[n] + (share - 0.5) * ray->step);
 }
 
 /* Shades and composites what is gathered. */

@@ -92,13 +92,6 @@ void snow_value_change_axis(snow_value_path *path,
 
 /* --- ahead ---------------------------------------------------------------- */
 
-static void apply(double turn[3][3], double v[3]) {
-    const double from[3] = {v[0], v[1], v[2]};
-    for (int i = 0; i < 3; i++)
-        v[i] = snow_dot(turn[i], from);
-    snow_normalize(v);
-}
-
 /* The placement along the next axis, and how many pictures it is until then; 0:
  * the view does not turn to another axis. */
 static int find_next(const snow_value_params *params, double from[3][3],
@@ -119,8 +112,13 @@ static int find_next(const snow_value_params *params, double from[3][3],
             turn[i][j] = from[0][j] * to[0][i] + from[1][j] * to[1][i] +
                          from[2][j] * to[2][i];
     for (int n = 1; n <= PICTURES_AHEAD && n * angle < TURN_AHEAD; n++) {
-        apply(turn, view.up);
-        apply(turn, view.back);
+        for (int k = 0; k < 2; k++) {
+            double *v = k ? view.back : view.up;
+            const double was[3] = {v[0], v[1], v[2]};
+            for (int i = 0; i < 3; i++)
+                v[i] = snow_dot(turn[i], was);
+            snow_normalize(v);
+        }
         if (snow_placement_make(params->volume->context, &params->volume->info,
                                 &view, out) != SNOW_STATUS_OK)
             return 0;
@@ -143,15 +141,6 @@ static bool begin_axis(snow_value_path *path, const snow_value_params *params,
         return false;
     kept->key = snow_value_key_of(path, params, params->volume->generation);
     return true;
-}
-
-/* Makes some bands more of it, so that it is whole when it is needed. */
-static bool encode_some_bands(const snow_value_order *order, int pictures,
-                              snow_value_encoding *kept) {
-    int64_t left = snow_value_store_left(&kept->store);
-    return !left || snow_value_store_go_on(&kept->store, &order->params,
-                                           (left + pictures - 1) / pictures) ==
-                        SNOW_STATUS_OK;
 }
 
 void snow_value_prepare_axis(snow_value_path *path,
@@ -181,8 +170,15 @@ void snow_value_prepare_axis(snow_value_path *path,
     snow_value_encoding *kept = &axes->kept[next.slice_axis];
     /* The first time it asks for memory, which takes long enough. */
     const bool first = !snow_value_fits_key(path, kept, &ahead, generation);
-    if ((first && !begin_axis(path, &ahead, &order, kept)) ||
-        ((!first || pictures == 1) &&
-         !encode_some_bands(&order, pictures, kept)))
+    bool good = !first || begin_axis(path, &ahead, &order, kept);
+    /* Some bands more of it, so that it is whole when it is needed. */
+    const int64_t left = good && (!first || pictures == 1)
+                             ? snow_value_store_left(&kept->store)
+                             : 0;
+    if (left)
+        good = snow_value_store_go_on(&kept->store, &order.params,
+                                      (left + pictures - 1) / pictures) ==
+               SNOW_STATUS_OK;
+    if (!good)
         forget(kept);
 }

@@ -65,15 +65,6 @@ static void covered_range(const snow_value_lattice *l, const snow_placement *p,
     }
 }
 
-/* Whole voxels of the front resampled slice: n pixels are `phases` a voxel. */
-static void round_to_voxels(const snow_perspective_shear_axis *from, int axis,
-                            int phases, snow_value_lattice *l) {
-    int64_t rest = ((from->first % phases) + phases) % phases;
-    l->first[axis] = (from->first - rest) / phases;
-    l->voxels[axis] = (from->count + rest + phases - 1) / phases;
-    snow_value_lattice_move(l, axis, (double)rest);
-}
-
 snow_status snow_value_eye_image(snow_context *context, const snow_placement *p,
                                  const int phases[2], snow_value_lattice *l) {
     const double pitch[2] = {1.0 / phases[0], 1.0 / phases[1]};
@@ -83,8 +74,17 @@ snow_status snow_value_eye_image(snow_context *context, const snow_placement *p,
     SNOW_TRY(snow_perspective_shear_cover(context, p, l->front - l->eye[2],
                                           pitch, covered, &l->scaled));
     l->empty = l->scaled.u.count == 0 || l->scaled.v.count == 0;
-    round_to_voxels(&l->scaled.u, 0, phases[0], l);
-    round_to_voxels(&l->scaled.v, 1, phases[1], l);
+    /* Whole voxels of the front resampled slice: n pixels are `phases` of
+     * them. */
+    for (int axis = 0; axis < 2; axis++) {
+        const snow_perspective_shear_axis *from =
+            axis ? &l->scaled.v : &l->scaled.u;
+        const int n = phases[axis];
+        const int64_t rest = ((from->first % n) + n) % n;
+        l->first[axis] = (from->first - rest) / n;
+        l->voxels[axis] = (from->count + rest + n - 1) / n;
+        snow_value_lattice_move(l, axis, (double)rest);
+    }
     return SNOW_STATUS_OK;
 }
 

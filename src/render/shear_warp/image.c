@@ -22,10 +22,6 @@ static int blocks_of(const snow_value_lattice *l) {
 
 /* --- memory --------------------------------------------------------------- */
 
-static int wanted_tiles(int64_t cells, int side) {
-    return (int)((cells + side - 1) / side);
-}
-
 /* The grid of a picture: the one before, if its tiles have room there. */
 static bool keep_grid(const snow_value_path *path,
                       const snow_value_params *params, int layers,
@@ -35,8 +31,10 @@ static bool keep_grid(const snow_value_path *path,
     const int spare = params->shared || params->volume->stream ? 0 : 2;
     *grid = (snow_value_grid){
         .cells = {l->cells[0], l->cells[1]},
-        .tiles = {wanted_tiles(l->voxels[0], SNOW_VALUE_COLUMNS),
-                  wanted_tiles(l->voxels[1], SNOW_VALUE_ROWS)},
+        .tiles = {(int)((l->voxels[0] + SNOW_VALUE_COLUMNS - 1) /
+                        SNOW_VALUE_COLUMNS),
+                  (int)((l->voxels[1] + SNOW_VALUE_ROWS - 1) /
+                        SNOW_VALUE_ROWS)},
         .channels = params->channels,
         .layers = layers,
         .quincunx = l->quincunx,
@@ -193,12 +191,6 @@ static void clear_beside(const snow_value_image *image, size_t layer,
         }
 }
 
-static size_t count_blocks(const snow_value_image *image) {
-    const size_t blocks = (size_t)blocks_of(&image->lattice);
-    const int layers = image->grid.layers > 1 ? image->grid.layers : 1;
-    return (size_t)layers * blocks * blocks;
-}
-
 /* The blocks of all layers; of those that have pixels of drawn tiles all others
  * are cleared, where the image was not before. */
 static void find_blocks(snow_value_image *image) {
@@ -242,7 +234,9 @@ static snow_status describe_plane(snow_context *context, snow_value_image *of,
                                 .warping = &of->warping};
     if (!l->quincunx)
         return SNOW_STATUS_OK;
-    SNOW_TRY(SNOW_RESERVE(context, of->blocks, 0, count_blocks(of)));
+    const size_t layers = of->grid.layers > 1 ? (size_t)of->grid.layers : 1;
+    SNOW_TRY(SNOW_RESERVE(context, of->blocks, 0,
+                          layers * (size_t)blocks * (size_t)blocks));
     image->drawn = of->blocks;
     image->tile_width = image->tile_height = BLOCK;
     image->tiles = blocks;

@@ -12,6 +12,8 @@
  * reads with it, back into the picture. */
 #include "render/shear_warp/internal.h"
 
+#include "base/vec3.h"
+
 #include <math.h>
 
 /* Lines of the picture by which a tile may miss the strip: a pixel's places lie
@@ -20,12 +22,6 @@
 
 /* What the warp reads around a place, with some to spare. */
 #define PIXELS_SPARE 5
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int i = 0; i < 3; i++)
-        out[i] =
-            a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
 
 /* Where the picture's (1, x, y) falls in the image: rows that make (w, w a, w
  * b). */
@@ -49,7 +45,7 @@ snow_value_strip snow_value_strip_of(const snow_value_lattice *l,
     double rows[3][3], columns[3][3];
     place_rows(l, rows);
     for (int n = 0; n < 3; n++)
-        cross(rows[(n + 1) % 3], rows[(n + 2) % 3], columns[n]);
+        snow_cross(rows[(n + 1) % 3], rows[(n + 2) % 3], columns[n]);
     double det = 0;
     for (int n = 0; n < 3; n++)
         det += rows[0][n] * columns[0][n];

@@ -68,14 +68,6 @@ size_t snow_value_node_floats(const snow_value_drawing *d) {
     return (SNOW_GROUP_RANKS + 1) * tile_pixels(d) * (size_t)d->splat.channels;
 }
 
-/* The planes of a tile as pixels. */
-static void weave(const snow_value_drawing *d, const void *planes, float *out) {
-    const int floats = SNOW_VALUE_COLUMNS * d->splat.channels;
-    for (int phase = 0; phase < d->splat.phases; phase++)
-        for (int row = 0; row < SNOW_VALUE_ROWS; row++, out += floats)
-            d->path->op->read(&d->splat, planes, phase, row, out);
-}
-
 static bool draw_group(const snow_value_drawing *d, int group, int x, int y,
                        void *scratch, float *out) {
     const snow_slab slices =
@@ -86,7 +78,11 @@ static bool draw_group(const snow_value_drawing *d, int group, int x, int y,
               ? snow_value_draw_stack(d, &slices, false, x, y, scratch)
               : d->tile(&splat, x, y, scratch)))
         return false;
-    weave(d, scratch, out);
+    /* The planes of a tile as pixels. */
+    const int floats = SNOW_VALUE_COLUMNS * d->splat.channels;
+    for (int phase = 0; phase < d->splat.phases; phase++)
+        for (int row = 0; row < SNOW_VALUE_ROWS; row++, out += floats)
+            d->path->op->read(&d->splat, scratch, phase, row, out);
     return true;
 }
 

@@ -147,15 +147,6 @@ static void show_means(const snow_shear_warp_warping *w, int y, int from,
     }
 }
 
-/* Lines that a mean takes before and behind its own: half a pixel's, and what
- * their samples read; all in perspective, where pixels differ. */
-static int lines_around(const snow_value_lattice *l) {
-    double half = (fabs(l->shear.along_x[1]) + fabs(l->shear.along_y[1])) / 2;
-    if (l->perspective)
-        return l->height;
-    return (int)ceil(half) + (2 << l->halvings) + 3;
-}
-
 snow_status snow_value_place_show(snow_value_path *path,
                                   const snow_value_params *params,
                                   const snow_shear_warp_image *image) {
@@ -184,7 +175,14 @@ snow_status snow_value_place_show(snow_value_path *path,
     if (l->means > 1) {
         w->line = show_means;
         w->spare_floats = (size_t)(w->width * image->channels + 64);
-        w->before = w->behind = lines_around(l);
+        /* Lines that a mean takes before and behind its own: half a pixel's,
+         * and what their samples read; all in perspective, where pixels
+         * differ. */
+        const double half =
+            (fabs(l->shear.along_x[1]) + fabs(l->shear.along_y[1])) / 2;
+        w->before = w->behind = l->perspective
+                                    ? l->height
+                                    : (int)ceil(half) + (2 << l->halvings) + 3;
     }
     of->path = path;
     if (l->halvings || path->op->finish)

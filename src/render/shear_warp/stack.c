@@ -4,23 +4,20 @@
 
 /* --- values --------------------------------------------------------------- */
 
-/* Whatever a file has, places beside it have no value, or label 0. */
-static snow_status measure_file(snow_value_path *layer, const snow_layer *given,
-                                snow_data_range *range) {
-    range->holes = true;
-    return snow_transfer_has_labels(given->transfer, &given->volume->info)
-               ? snow_value_labels_name(layer->context, &layer->labels, 0)
-               : SNOW_STATUS_OK;
-}
-
 snow_status snow_value_measure_layer(snow_value_path *path, int n,
                                      const snow_layer *given, int threads,
                                      snow_data_range *out) {
     SNOW_TRY(snow_value_path_new(path->context, &path->layers[n]));
     SNOW_TRY(snow_value_measure(path->layers[n], given->volume, given->transfer,
                                 threads, out));
-    return given->volume->stream ? measure_file(path->layers[n], given, out)
-                                 : SNOW_STATUS_OK;
+    if (!given->volume->stream)
+        return SNOW_STATUS_OK;
+    /* Whatever a file has, places beside it have no value, or label 0. */
+    out->holes = true;
+    return snow_transfer_has_labels(given->transfer, &given->volume->info)
+               ? snow_value_labels_name(path->layers[n]->context,
+                                        &path->layers[n]->labels, 0)
+               : SNOW_STATUS_OK;
 }
 
 snow_status snow_value_set_layers(snow_value_path *path,

@@ -44,14 +44,6 @@ void snow_shear_warp_clear(const snow_shear_warp_image *image, int layer,
     }
 }
 
-/* Returns whether `count` floats are all 0. */
-static bool all_zero(const float *values, size_t count) {
-    for (size_t n = 0; n < count; n++)
-        if (values[n] != 0)
-            return false;
-    return true;
-}
-
 void snow_shear_warp_put_lines(const snow_shear_warp_image *image, int first,
                                int count, const float *pixels) {
     size_t floats = (size_t)(image->width * image->channels);
@@ -63,9 +55,9 @@ void snow_shear_warp_put_lines(const snow_shear_warp_image *image, int first,
                floats * sizeof *pixels);
         for (size_t x = 0; x * block < floats; x++) {
             size_t left = floats - x * block;
-            if (!drawn[x])
-                drawn[x] =
-                    !all_zero(pixels + x * block, left < block ? left : block);
+            size_t end = x * block + (left < block ? left : block);
+            for (size_t n = x * block; n < end && !drawn[x]; n++)
+                drawn[x] = pixels[n] != 0;
         }
     }
 }

@@ -25,8 +25,8 @@ static inline void SPLAT_SCATTER(const snow_splatter *splatter,
     for (; line <= bottom; line++) {
         double dy = line + 0.5 - y;
         double middle_u = u->lean * dy, middle_v = v->lean * dy;
-        double from = larger(middle_u - u->extent, middle_v - v->extent);
-        double to = smaller(middle_u + u->extent, middle_v + v->extent);
+        double from = SNOW_MAX(middle_u - u->extent, middle_v - v->extent);
+        double to = SNOW_MIN(middle_u + u->extent, middle_v + v->extent);
         int first = snow_first_pixel(x + from, sheet->width);
         int last = snow_last_pixel(x + to, sheet->width);
         double dx = first + 0.5 - x;

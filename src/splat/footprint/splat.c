@@ -1,6 +1,7 @@
 /* splat/footprint/splat.c - the footprints of one view (figure 2 of the paper),
  * and the sheet that they are added to. */
 #include "splat/footprint/splat.h"
+#include "base/minmax.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,15 +26,6 @@ static inline float box_weight(const snow_splatter *splatter, float u,
                                float v) {
     return snow_scaled_kernel_box(&splatter->along_u, (double)u) *
            snow_scaled_kernel_box(&splatter->along_v, (double)v);
-}
-
-/* They are fmin and fmax, but inline; there are no NaNs here. */
-static inline double smaller(double a, double b) {
-    return a < b ? a : b;
-}
-
-static inline double larger(double a, double b) {
-    return a > b ? a : b;
 }
 
 #define SPLAT_CHANNELS 2
@@ -184,13 +176,13 @@ void snow_splatter_rows(const snow_splatter *s, const snow_sheet *sheet,
     if (fabs(step) * (double)p->rows < ALIGNED)
         return;
     /* One extra pixel on either side does no harm; one less would. */
-    double low = sheet->top - s->origin[1] - s->reach[1] - larger(across, 0);
+    double low = sheet->top - s->origin[1] - s->reach[1] - SNOW_MAX(across, 0);
     double high =
-        sheet->bottom - s->origin[1] + s->reach[1] - smaller(across, 0);
+        sheet->bottom - s->origin[1] + s->reach[1] - SNOW_MIN(across, 0);
     double a = (low - 1) / step, b = (high + 1) / step;
     double rows = (double)p->rows;
-    *first = (int64_t)fmin(fmax(floor(smaller(a, b)), 0), rows);
-    *end = (int64_t)fmin(fmax(ceil(larger(a, b)) + 1, 0), rows);
+    *first = (int64_t)fmin(fmax(floor(SNOW_MIN(a, b)), 0), rows);
+    *end = (int64_t)fmin(fmax(ceil(SNOW_MAX(a, b)) + 1, 0), rows);
 }
 
 void snow_splat_row(const snow_splatter *s, snow_sheet *sheet, int64_t row,

@@ -1,5 +1,6 @@
 /* splat/shear_warp/cut.c - slabs at the volume's sides, of which a ray
  * crosses a part only. */
+#include "base/minmax.h"
 #include "splat/shear_warp/scratch.h"
 
 #include <math.h>
@@ -58,14 +59,6 @@ static uint32_t lanes_between(int first, int end) {
     return (uint32_t)(bits >> first << first);
 }
 
-static int lesser(int a, int b) {
-    return a < b ? a : b;
-}
-
-static int greater(int a, int b) {
-    return a < b ? b : a;
-}
-
 void snow_value_cut(const double front[2], const double back[2], double low,
                     double high, value_cut *out) {
     out->cuts =
@@ -78,9 +71,9 @@ void snow_value_cut(const double front[2], const double back[2], double low,
     int first[2] = {first_lane(front, low), first_lane(back, low)};
     int end[2] = {end_lane(front, high), end_lane(back, high)};
     uint32_t whole =
-        lanes_between(greater(first[0], first[1]), lesser(end[0], end[1]));
+        lanes_between(SNOW_MAX(first[0], first[1]), SNOW_MIN(end[0], end[1]));
     uint32_t parts =
-        lanes_between(lesser(first[0], first[1]), greater(end[0], end[1])) &
+        lanes_between(SNOW_MIN(first[0], first[1]), SNOW_MAX(end[0], end[1])) &
         ~whole;
     for (int n = 0; n < 32; n++) {
         out->from[n] = 0;
@@ -168,14 +161,6 @@ static int lane_of(double place) {
     return place > 0 ? place < 32 ? (int)place : 32 : 0;
 }
 
-/* Lanes whose places, cells from `first` on, are within a part. */
-static uint32_t lanes_within(const double own[2], int64_t first, double at) {
-    const uint64_t one = 1;
-    int from = lane_of(ceil(own[0] - at) - (double)first);
-    int to = lane_of(ceil(own[1] - at) - (double)first);
-    return to > from ? (uint32_t)((one << to) - (one << from)) : 0;
-}
-
 /* The same in perspective, from lane `skip` on. */
 static uint32_t spread_within(const double own[2], int64_t stored,
                               const snow_value_lanes *lanes, int skip) {
@@ -193,9 +178,13 @@ uint32_t snow_value_own_lanes(const snow_value_splat *p, int n, int phase,
                               const int tile[2], int axis) {
     int64_t first =
         axis ? value_tile_row(p, tile[1]) : value_tile_column(p, tile[0]);
-    if (!p->rays)
-        return lanes_within(p->own[axis], first,
-                            p->places[n * p->phases + phase].at[axis]);
+    if (!p->rays) { /* lanes whose places are within the part */
+        const double at = p->places[n * p->phases + phase].at[axis];
+        const uint64_t one = 1;
+        int from = lane_of(ceil(p->own[axis][0] - at) - (double)first);
+        int to = lane_of(ceil(p->own[axis][1] - at) - (double)first);
+        return to > from ? (uint32_t)((one << to) - (one << from)) : 0;
+    }
     return spread_within(p->own[axis], p->rays->stored[axis],
                          value_lanes_of(p->rays, n, phase, axis, tile[axis]),
                          axis);

@@ -44,23 +44,20 @@ static int slice_member(const snow_value_store *s, int label, int64_t i,
     return 2 * here - (code_of(s, u, v, k) == label ? SNOW_VALUE_MOST : 0);
 }
 
-static int voxel_member(const snow_value_store *s, int label, int64_t i,
-                        int64_t j, int64_t k, bool between, int toward) {
-    int here = slice_member(s, label, i, j, k);
-    return between
-               ? value_toward(here, slice_member(s, label, i, j, k + 1), toward)
-               : here;
-}
-
 static int member_at(const snow_value_store *s, int label,
                      const value_spot *at) {
     int row[2];
+    const int64_t k = at->resampled->slice;
     for (int y = 0; y < 2; y++) {
         int ends[2];
-        for (int x = 0; x < 2; x++)
-            ends[x] = voxel_member(s, label, at->i + x, at->j + y,
-                                   at->resampled->slice, at->resampled->between,
-                                   at->resampled->toward);
+        for (int x = 0; x < 2; x++) {
+            const int64_t i = at->i + x, j = at->j + y;
+            ends[x] = slice_member(s, label, i, j, k);
+            if (at->resampled->between)
+                ends[x] =
+                    value_toward(ends[x], slice_member(s, label, i, j, k + 1),
+                                 at->resampled->toward);
+        }
         row[y] = value_between(ends[0], ends[1], at->wu);
     }
     return value_between(row[0], row[1], at->wv);

@@ -56,13 +56,6 @@ typedef struct table {
     bool take;
 } table;
 
-/* Names of columns begin with a letter, possibly quoted. */
-static bool is_title(const char *at) {
-    while (*at == ' ' || *at == '\t' || *at == '"')
-        at++;
-    return (*at >= 'A' && *at <= 'Z') || (*at >= 'a' && *at <= 'z');
-}
-
 static snow_status walk_lines(const tf_input *in, snow_look_file *tf,
                               table *t) {
     const char *at = in->bytes, *end = in->bytes + in->size;
@@ -74,9 +67,14 @@ static snow_status walk_lines(const tf_input *in, snow_look_file *tf,
         at = stop + 1;
         if (r.count == 0)
             continue;
-        if (r.count < 0 && !t->columns && !t->headed && is_title(start)) {
-            t->headed = true;
-            continue;
+        if (r.count < 0 && !t->columns && !t->headed) {
+            /* Names of columns begin with a letter, possibly quoted. */
+            while (*start == ' ' || *start == '\t' || *start == '"')
+                start++;
+            t->headed = (*start >= 'A' && *start <= 'Z') ||
+                        (*start >= 'a' && *start <= 'z');
+            if (t->headed)
+                continue;
         }
         if (!t->columns)
             t->columns = r.count;

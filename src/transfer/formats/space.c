@@ -94,14 +94,6 @@ static void hsv_of(const double rgb[3], double hsv[3]) {
     hsv[2] = most;
 }
 
-/* The share of a primary colour, 0 to 1, at this distance around the hue
- * circle. */
-static double share_of_hue(double around) {
-    around -= floor(around);
-    double way = fabs(6 * around - 3) - 1;
-    return way < 0 ? 0 : way > 1 ? 1 : way;
-}
-
 static void mix_hsv(const double a[3], const double b[3], bool wrap,
                     double part, double out[3]) {
     double from[3], to[3], hsv[3];
@@ -111,7 +103,11 @@ static void mix_hsv(const double a[3], const double b[3], bool wrap,
         from[0] > to[0] ? (from[0] -= 1) : (to[0] -= 1);
     straight(from, to, part, hsv);
     for (int i = 0; i < 3; i++) {
-        double share = share_of_hue(hsv[0] - i / 3.0);
+        /* The share of a primary colour, 0 to 1, at this distance around the
+         * hue circle. */
+        double around = hsv[0] - i / 3.0;
+        double way = fabs(6 * (around - floor(around)) - 3) - 1;
+        double share = way < 0 ? 0 : way > 1 ? 1 : way;
         out[i] = hsv[2] * (1 - hsv[1] * (1 - share));
     }
 }

@@ -22,11 +22,6 @@ static bool ends_with(const char *text, const char *suffix) {
     return a >= b && strcmp(text + a - b, suffix) == 0;
 }
 
-/* A text has no zero bytes. */
-static bool is_text(const tf_input *in) {
-    return !memchr(in->bytes, 0, in->size);
-}
-
 /* Returns whether it has only numbers and blanks, and at least the six of the
  * light and three counts. */
 static bool looks_like_vp(const tf_input *in) {
@@ -46,13 +41,14 @@ static snow_status read_bytes(const tf_input *in, snow_look_file *tf) {
     if (in->size >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0)
         at += 3;
     at += strspn(at, " \t\r\n");
-    if (palette && (ends_with(in->name, ".pal") || !is_text(in)))
+    const bool text = !memchr(in->bytes, 0, in->size); /* without zero bytes */
+    if (palette && (ends_with(in->name, ".pal") || !text))
         return tf_read_pal(in, tf);
     if (ends_with(in->name, ".pal"))
         return tf_fail(
             in, "has %zu bytes; a palette has 768, or 1024 with opacities",
             in->size);
-    if (!is_text(in))
+    if (!text)
         return tf_fail(
             in, "is neither text nor a palette; give a transfer function");
     if (*at == '{' || *at == '[')

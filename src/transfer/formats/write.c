@@ -130,13 +130,6 @@ static double opacity_at(const snow_look *points, size_t next, double at) {
                p[next].value, at);
 }
 
-static void put_row(sheet *out, const snow_look *points, size_t color,
-                    size_t opacity, double at) {
-    snow_color_point c = color_at(points, color, at);
-    put_text(out, "%.17g,%.17g,%.17g,%.17g,%.17g\n", at, c.red, c.green, c.blue,
-             opacity_at(points, opacity, at));
-}
-
 /* Walks along both kinds of points: one row per point; a value that repeats
  * gets as many rows as the kind that has more of it. */
 static void put_rows(sheet *out, const snow_look *points) {
@@ -149,7 +142,9 @@ static void put_rows(sheet *out, const snow_look *points) {
         double at = more_colors && (!more || c <= o) ? c : o;
         color += more_colors && c == at;
         opacity += more && o == at;
-        put_row(out, points, color, opacity, at);
+        const snow_color_point rgb = color_at(points, color, at);
+        put_text(out, "%.17g,%.17g,%.17g,%.17g,%.17g\n", at, rgb.red, rgb.green,
+                 rgb.blue, opacity_at(points, opacity, at));
     }
 }
 
