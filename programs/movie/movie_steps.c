@@ -350,7 +350,9 @@ static int append_share(value_pool *pool, int rank, double ends[2]) {
     pool->count += given.count;
     ends[0] = fmin(ends[0], given.ends[0]); /* NaN if there are none */
     ends[1] = fmax(ends[1], given.ends[1]);
-    return check_status(snow_comm_context(comm), status);
+    return status == SNOW_STATUS_OK
+               ? CONTINUE
+               : fail_status(snow_comm_context(comm), status);
 }
 
 #define SLAB ((uint64_t)1 << 20)
