@@ -179,15 +179,19 @@ static void widen_line(const tiff_plan *plan, const unsigned char *line,
     }
 }
 
-static snow_status read_lines(const snow_tiff *file, const snow_source *source,
+/* What libtiff warns of while it decodes is damage too. */
+static snow_status read_lines(snow_tiff *file, const snow_source *source,
                               const tiff_plan *plan, snow_image *image) {
     uint64_t bytes = (uint64_t)TIFFScanlineSize64(file->tiff);
     unsigned char *line = snow_allocate_array(file->context, bytes, 1);
     bool good = bytes == (uint64_t)plan->width * plan->samples * plan->bits / 8;
     if (!line)
         return SNOW_STATUS_NO_MEMORY;
+    *file->complaint = 0;
+    file->decoding = true;
     for (uint32_t y = 0; y < plan->height && good; y++) {
-        good = TIFFReadScanline(file->tiff, line, y, 0) == 1;
+        good =
+            TIFFReadScanline(file->tiff, line, y, 0) == 1 && !*file->complaint;
         if (good)
             widen_line(plan, line, image->pixels + 4 * (size_t)y * plan->width);
     }
@@ -195,7 +199,7 @@ static snow_status read_lines(const snow_tiff *file, const snow_source *source,
     return good ? SNOW_STATUS_OK : fail_tiff(file, source);
 }
 
-static snow_status read_page(const snow_tiff *file, const snow_source *source,
+static snow_status read_page(snow_tiff *file, const snow_source *source,
                              snow_image **out) {
     tiff_plan plan;
     snow_image *image = NULL;

@@ -3,6 +3,9 @@
 
 #if SNOW_HAVE_TIFF
 
+#include "io/zlib_memory.h"
+
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -10,11 +13,20 @@
  * like, in addition to the size of the file. */
 #define LIBRARY_BYTES ((uint64_t)64 << 20)
 
+static toff_t set_size(thandle_t handle) {
+    const snow_tiff *file = (const snow_tiff *)handle;
+    return file->bytes ? snow_seekable_size(file->bytes) : file->store.size;
+}
+
 static tmsize_t read_bytes(thandle_t handle, void *bytes, tmsize_t size) {
     snow_tiff *file = (snow_tiff *)handle;
     size_t got = 0;
     if (file->bytes)
         got = snow_seekable_read(file->bytes, file->at, bytes, (size_t)size);
+    /* The place of the next page, of 4 bytes or 8, is read alone: libtiff takes
+     * one that is cut for the mark of the last page. */
+    file->cut |= got < (size_t)size && (size == 4 || size == 8) &&
+                 file->at <= set_size(handle);
     file->at += got;
     return (tmsize_t)got;
 }
@@ -29,11 +41,6 @@ static tmsize_t write_bytes(thandle_t handle, void *bytes, tmsize_t size) {
         return 0;
     file->at += (uint64_t)size;
     return size;
-}
-
-static toff_t set_size(thandle_t handle) {
-    const snow_tiff *file = (const snow_tiff *)handle;
-    return file->bytes ? snow_seekable_size(file->bytes) : file->store.size;
 }
 
 static toff_t seek_byte(thandle_t handle, toff_t offset, int whence) {
@@ -61,15 +68,24 @@ static int keep_error(TIFF *tiff, void *user, const char *module,
     return 1;
 }
 
-/* Mostly about unknown tags. */
-static int ignore_warning(TIFF *tiff, void *user, const char *module,
-                          const char *format, va_list arguments) {
-    (void)tiff;
-    (void)user;
-    (void)module;
-    (void)format;
-    (void)arguments;
-    return 1;
+/* What libtiff says of whole samples that were written in old ways. */
+static bool is_harmless(const char *warning) {
+    static const char *const known[] = {"Old-style LZW codes",
+                                        "exceeds expected dimensions",
+                                        "troublesome old-style JPEG"};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (strstr(warning, known[i]))
+            return true;
+    return false;
+}
+
+/* Those of directories are about unknown tags, also of valid files. */
+static int keep_warning(TIFF *tiff, void *user, const char *module,
+                        const char *format, va_list arguments) {
+    const snow_tiff *file = user;
+    if (!file->decoding || is_harmless(format))
+        return 1;
+    return keep_error(tiff, user, module, format, arguments);
 }
 
 /* In `mode`, m means not mapped. */
@@ -82,7 +98,7 @@ static snow_status open_client(snow_tiff *file, const char *name,
     uint64_t most = set_size((thandle_t)file) + LIBRARY_BYTES;
     TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)most);
     TIFFOpenOptionsSetErrorHandlerExtR(options, keep_error, file);
-    TIFFOpenOptionsSetWarningHandlerExtR(options, ignore_warning, file);
+    TIFFOpenOptionsSetWarningHandlerExtR(options, keep_warning, file);
     file->tiff = TIFFClientOpenExt(name, mode, (thandle_t)file, read_bytes,
                                    write_bytes, seek_byte, close_nothing,
                                    set_size, NULL, NULL, options);
@@ -94,7 +110,124 @@ snow_status snow_tiff_open(snow_source *source, snow_tiff *file) {
     *file = (snow_tiff){.context = snow_source_context(source)};
     SNOW_TRY(snow_seekable_open(source, &file->bytes));
     SNOW_TRY(open_client(file, snow_source_name(source), "rm"));
-    return file->tiff ? SNOW_STATUS_OK : snow_tiff_fail(file);
+    return file->tiff && !file->cut ? SNOW_STATUS_OK : snow_tiff_fail(file);
+}
+
+snow_status snow_tiff_next(snow_tiff *file, bool *got) {
+    *file->complaint = 0;
+    *got = TIFFReadDirectory(file->tiff) != 0;
+    /* The result does not distinguish an end from a damaged page; libtiff's
+     * error does. */
+    return (!*got && *file->complaint) || file->cut ? snow_tiff_fail(file)
+                                                    : SNOW_STATUS_OK;
+}
+
+/* Reads a part as it is stored, before `beside` bytes of the caller's own. */
+static snow_status read_packed(snow_tiff *file, uint32_t part, uint64_t beside,
+                               unsigned char **out, tmsize_t *count) {
+    uint64_t packed = TIFFGetStrileByteCount(file->tiff, part), all;
+    if (packed > snow_seekable_size(file->bytes) ||
+        !snow_add_u64(packed, beside, &all))
+        return snow_tiff_fail(file);
+    *out = snow_allocate_array(file->context, all, 1);
+    if (!*out)
+        return SNOW_STATUS_NO_MEMORY;
+    *count = (tmsize_t)packed;
+    if ((TIFFIsTiled(file->tiff) ? TIFFReadRawTile : TIFFReadRawStrip)(
+            file->tiff, part, *out, *count) == *count)
+        return SNOW_STATUS_OK;
+    snow_release(file->context, *out);
+    return snow_tiff_fail(file);
+}
+
+/* Where Group 4 data end early, libtiff leaves the rows that are missing as
+ * they were in memory, and says nothing.  So a part is decoded again with one
+ * more row: that row is written only if all before it were there. */
+static snow_status check_rows(snow_tiff *file, uint32_t part, uint64_t size,
+                              uint64_t row_bytes) {
+    unsigned char *in;
+    tmsize_t count;
+    uint64_t more;
+    bool whole = false;
+    if (!snow_add_u64(size, row_bytes, &more))
+        return snow_tiff_fail(file);
+    SNOW_TRY(read_packed(file, part, more, &in, &count));
+    unsigned char *out = in + count;
+    /* A row that is written differs from one of the two. */
+    for (int fill = 0xff; fill >= 0 && !whole; fill -= 0xff) {
+        memset(out + size, fill, (size_t)row_bytes);
+        TIFFReadFromUserBuffer(file->tiff, part, in, count, out,
+                               (tmsize_t)more);
+        whole = out[size] != fill;
+    }
+    snow_release(file->context, in);
+    return whole ? SNOW_STATUS_OK : snow_tiff_fail(file);
+}
+
+static bool inflates(snow_context *context, unsigned char *in, tmsize_t count,
+                     uint64_t size) {
+    unsigned char out[16384];
+    z_stream stream = {.next_in = in, .avail_in = (uInt)count};
+    snow_zlib_use(&stream, context);
+    int result = inflateInit(&stream);
+    while (result == Z_OK) {
+        stream.next_out = out;
+        stream.avail_out = sizeof out;
+        result = inflate(&stream, Z_NO_FLUSH);
+    }
+    inflateEnd(&stream);
+    return result == Z_STREAM_END && stream.total_out >= size;
+}
+
+/* libtiff does not look at the check sum behind data that fill the part, and
+ * with libdeflate it leaves their last bytes as they were in memory if the
+ * codes are damaged.  Data that were changed afterwards are inflated again. */
+static snow_status check_sum(snow_tiff *file, uint32_t part,
+                             const unsigned char *out, uint64_t size) {
+    const uint64_t end = TIFFGetStrileOffset(file->tiff, part) +
+                         TIFFGetStrileByteCount(file->tiff, part);
+    uint16_t predictor = 1, order = FILLORDER_MSB2LSB;
+    unsigned char sum[4], *in;
+    tmsize_t count;
+    TIFFGetField(file->tiff, TIFFTAG_PREDICTOR, &predictor);
+    TIFFGetFieldDefaulted(file->tiff, TIFFTAG_FILLORDER, &order);
+    if (order != FILLORDER_MSB2LSB)
+        return SNOW_STATUS_OK;
+    if (predictor == 1 && !TIFFIsByteSwapped(file->tiff) && end >= 4 &&
+        snow_seekable_read(file->bytes, end - 4, sum, 4) == 4 &&
+        adler32_z(1, out, (size_t)size) ==
+            ((uLong)sum[0] << 24 | (uLong)sum[1] << 16 | (uLong)sum[2] << 8 |
+             sum[3]))
+        return SNOW_STATUS_OK;
+    SNOW_TRY(read_packed(file, part, 0, &in, &count));
+    const bool whole =
+        count <= INT_MAX && inflates(file->context, in, count, size);
+    snow_release(file->context, in);
+    return whole ? SNOW_STATUS_OK : snow_tiff_fail(file);
+}
+
+snow_status snow_tiff_decode(snow_tiff *file, uint32_t part, void *out,
+                             uint64_t size, uint64_t row_bytes) {
+    uint16_t compression = 0;
+    tmsize_t wanted = (tmsize_t)size;
+    *file->complaint = 0;
+    file->decoding = true;
+    tmsize_t got = (TIFFIsTiled(file->tiff)
+                        ? TIFFReadEncodedTile
+                        : TIFFReadEncodedStrip)(file->tiff, part, out, wanted);
+    file->decoding = false;
+    if (got != wanted || *file->complaint)
+        return snow_tiff_fail(file);
+    TIFFGetFieldDefaulted(file->tiff, TIFFTAG_COMPRESSION, &compression);
+    switch (compression) {
+    case COMPRESSION_CCITTFAX4:
+        return check_rows(file, part, size, row_bytes);
+    case COMPRESSION_DEFLATE:
+    case COMPRESSION_ADOBE_DEFLATE:
+        return check_sum(file, part, out, size);
+    default:
+        return SNOW_STATUS_OK;
+    }
 }
 
 snow_status snow_tiff_create(snow_context *context, snow_tiff *file) {

@@ -2,7 +2,8 @@
  *
  * libtiff reads and writes bytes through functions and reports errors to the
  * file's own handler: nothing is printed and no state is shared. Its own
- * allocations are limited by the size of the file. */
+ * allocations are limited by the size of the file. Damage that it only warns
+ * of, or passes over in silence, is found here. */
 #ifndef SNOW_IO_TIFF_H
 #define SNOW_IO_TIFF_H
 
@@ -32,6 +33,8 @@ typedef struct snow_tiff {
     uint64_t at;            /* position of libtiff's next read or write */
     snow_status status;     /* of the memory file */
     TIFF *tiff;
+    bool decoding; /* samples, so that a warning means damage */
+    bool cut; /* the file ends where the place of the next page should be */
     char complaint[200]; /* libtiff's first error: later ones follow from it */
 } snow_tiff;
 
@@ -46,6 +49,17 @@ snow_status snow_tiff_create(snow_context *context, snow_tiff *file);
 /* Ends with libtiff: a written file's bytes are complete then, and remain. */
 void snow_tiff_end(snow_tiff *file);
 void snow_tiff_close(snow_tiff *file);
+
+/* Advances to the next page; *got is false after the last. Errors:
+ * SNOW_STATUS_BAD_INPUT. */
+snow_status snow_tiff_next(snow_tiff *file, bool *got);
+
+/* Decodes strip or tile number `part` of the page to `size` bytes at `out`; the
+ * rows of a part have `row_bytes`. What libtiff only warns of is an error too,
+ * since the bytes would be invented. Errors: SNOW_STATUS_BAD_INPUT,
+ * SNOW_STATUS_NO_MEMORY. */
+snow_status snow_tiff_decode(snow_tiff *file, uint32_t part, void *out,
+                             uint64_t size, uint64_t row_bytes);
 
 /* "is a damaged TIFF file" with libtiff's error. */
 snow_status snow_tiff_fail(const snow_tiff *file);

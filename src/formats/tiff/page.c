@@ -222,9 +222,8 @@ static snow_status read_strips(snow_tiff *file, const tiff_page *page,
         int64_t height = page->height - y < rows ? page->height - y : rows;
         uint32_t strip = TIFFComputeStrip(
             tiff, (uint32_t)y, page->separate ? (uint16_t)sample : 0);
-        tmsize_t wanted = (tmsize_t)((uint64_t)height * row_bytes);
-        if (TIFFReadEncodedStrip(tiff, strip, buffer, wanted) != wanted)
-            return snow_tiff_fail(file);
+        SNOW_TRY(snow_tiff_decode(file, strip, buffer,
+                                  (uint64_t)height * row_bytes, row_bytes));
         const tiff_block block = {buffer,   0,
                                   y,        page->width,
                                   height,   page->separate ? 1 : page->samples,
@@ -239,7 +238,7 @@ static snow_status read_tiles(snow_tiff *file, const tiff_page *page,
                               unsigned char *buffer, unsigned char *slice) {
     TIFF *tiff = file->tiff;
     uint32_t wide = 0, high = 0;
-    tmsize_t size = (tmsize_t)TIFFTileSize64(tiff);
+    uint64_t row_bytes = TIFFTileRowSize64(tiff);
     TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &wide);
     TIFFGetField(tiff, TIFFTAG_TILELENGTH, &high);
     if (wide < 1 || high < 1)
@@ -251,15 +250,11 @@ static snow_status read_tiles(snow_tiff *file, const tiff_page *page,
             uint32_t tile =
                 TIFFComputeTile(tiff, (uint32_t)x, (uint32_t)y, 0,
                                 page->separate ? (uint16_t)sample : 0);
-            if (TIFFReadEncodedTile(tiff, tile, buffer, size) != size)
-                return snow_tiff_fail(file);
-            const tiff_block block = {buffer,
-                                      x,
-                                      y,
-                                      wide,
-                                      high,
-                                      page->separate ? 1 : page->samples,
-                                      TIFFTileRowSize64(tiff)};
+            SNOW_TRY(snow_tiff_decode(file, tile, buffer, TIFFTileSize64(tiff),
+                                      row_bytes));
+            const tiff_block block = {
+                buffer,   x, y, wide, high, page->separate ? 1 : page->samples,
+                row_bytes};
             put_block(page, &block, page->separate ? 0 : sample, w, slice);
         }
     return SNOW_STATUS_OK;
@@ -270,7 +265,6 @@ snow_status snow_tiff_read_page(snow_tiff *file, const tiff_page *page,
                                 unsigned char *slice) {
     bool tiled = TIFFIsTiled(file->tiff);
     unsigned char *buffer;
-    *file->complaint = 0;
     SNOW_TRY(make_buffer(file, page,
                          tiled ? TIFFTileSize64(file->tiff)
                                : TIFFStripSize64(file->tiff),

@@ -35,18 +35,13 @@ static bool same_page(const tiff_page *a, const tiff_page *b) {
            a->bits == b->bits && a->coding == b->coding;
 }
 
-/* Advances to the next page that counts; *got is false after the last.  The
- * result does not distinguish an end from a damaged page; libtiff's error
- * does. */
+/* Advances to the next page that counts; *got is false after the last. */
 static snow_status next_page(snow_tiff *file, bool *got) {
     uint32_t kind = 0;
     do { /* past thumbnails of others */
-        *file->complaint = 0;
-        *got = TIFFReadDirectory(file->tiff) != 0;
-        if (!*got)
-            return *file->complaint ? snow_tiff_fail(file) : SNOW_STATUS_OK;
+        SNOW_TRY(snow_tiff_next(file, got));
         TIFFGetFieldDefaulted(file->tiff, TIFFTAG_SUBFILETYPE, &kind);
-    } while (kind & FILETYPE_REDUCEDIMAGE);
+    } while (*got && (kind & FILETYPE_REDUCEDIMAGE));
     return SNOW_STATUS_OK;
 }
 
