@@ -59,12 +59,16 @@ typedef struct jpeg_signs {
     bool transform;     /* Adobe's, with an unknown transform */
 } jpeg_signs;
 
-/* Returns whether the segments are intact up to the start of the scan,
- * including Huffman tables if the frame needs them: otherwise GDCM ends the
- * process. JPEG-LS (`ls`) needs no tables, and does not use libjpeg. */
+/* Adobe's transform is used if there are three components, and no JFIF that
+ * defines them. */
+static bool warns(const jpeg_signs *signs, uint32_t samples) {
+    return signs->version || (signs->transform && samples == 3 && !signs->jfif);
+}
+
+/* Returns whether the segments are intact up to the start of the scan:
+ * otherwise GDCM ends the process. JPEG-LS (`ls`) does not use libjpeg. */
 static bool has_scan(const unsigned char *bytes, size_t size, bool ls,
                      uint32_t samples) {
-    bool tables = false;
     jpeg_signs signs = {false, false, false};
     for (size_t at = 2; at + 4 <= size && bytes[at] == 0xff;) {
         int marker = bytes[at + 1];
@@ -83,14 +87,10 @@ static bool has_scan(const unsigned char *bytes, size_t size, bool ls,
         } else if (marker == 0xee && (length - 2) >= 12 &&
                    !memcmp(data, "Adobe", 5))
             signs.transform = data[11] > 1;
-        tables |= marker == 0xc4;
         if (marker == 0xf7 && !ls)
             return false;
-        /* Adobe's transform is used if there are three components, and no JFIF
-         * that defines them. */
         if (marker == 0xda)
-            return ls || (tables && !signs.version &&
-                          !(signs.transform && samples == 3 && !signs.jfif));
+            return ls || !warns(&signs, samples);
         at += 2 + length;
     }
     return false;
@@ -155,29 +155,55 @@ static bool has_tile(const unsigned char *bytes, size_t size) {
     return false;
 }
 
+static bool is_jpeg2000(const char *syntax) {
+    return !strncmp(syntax, "1.2.840.10008.1.2.4.9", 21);
+}
+
+static bool is_jpeg_ls(const char *syntax) {
+    return !strncmp(syntax, "1.2.840.10008.1.2.4.8", 21);
+}
+
+snow_status snow_dicom_fail_unpack(snow_context *context, const char *syntax) {
+    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                     "its pixels cannot be decompressed (transfer syntax %s); "
+                     "it is truncated or damaged",
+                     syntax);
+}
+
+/* CharLS finds by itself what else is missing in JPEG-LS. */
+static snow_status check_whole(snow_context *context, const char *syntax,
+                               const unsigned char *bytes, size_t size) {
+    bool whole = true;
+    if (is_jpeg2000(syntax))
+        SNOW_TRY(snow_dicom_walk_jpeg2000(context, bytes, size, &whole));
+    else
+        whole = (is_jpeg_ls(syntax) ? snow_dicom_jpeg_ls_has_end
+                                    : snow_dicom_jpeg_is_whole)(bytes, size);
+    return whole ? SNOW_STATUS_OK : snow_dicom_fail_unpack(context, syntax);
+}
+
 snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
                                     const dicom_image *image,
                                     const unsigned char **bytes, size_t *size) {
     packed_head head;
     const bool jpeg2000 = !strncmp(syntax, "1.2.840.10008.1.2.4.9", 21);
-    bool known = jpeg2000 ? read_jpeg2000(bytes, size, &head)
-                          : read_jpeg(*bytes, *size, &head);
-    bool same = known && head.columns == (uint32_t)image->columns &&
-                head.rows == (uint32_t)image->rows &&
-                head.samples == (uint32_t)image->samples &&
-                head.bits <= image->allocated &&
-                (head.bits > 8) == (image->allocated > 8);
+    bool known = jpeg2000 ? read_jpeg2000(bytes, size, &head) bool same =
+                                known &&
+                                head.columns == (uint32_t)image->columns &&
+                                head.rows == (uint32_t)image->rows &&
+                                head.samples == (uint32_t)image->samples &&
+                                head.bits <= image->allocated &&
+                                (head.bits > 8) == (image->allocated > 8);
     if (same && head.unlike)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
             "its compressed colours differ in size or depth, which is not "
             "supported; decompress it, for example with gdcmconv --raw");
     if (same &&
-        (jpeg2000 ? has_tile(*bytes, *size)
-                  : has_scan(*bytes, *size,
-                             !strncmp(syntax, "1.2.840.10008.1.2.4.8", 21),
-                             head.samples)))
-        return SNOW_STATUS_OK;
+        (is_jpeg2000(syntax)
+             ? has_tile(*bytes, *size)
+             : has_scan(*bytes, *size, is_jpeg_ls(syntax), head.samples)))
+        return check_whole(context, syntax, *bytes, *size);
     if (known && !same)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,

@@ -17,6 +17,8 @@
  *   pixels  palette.c  the brightness of palette colours
  *           pixels.c   a frame's words, plain or compressed
  *           codec.c    the headers of compressed ones, checked before GDCM
+ *           entropy.c  the codes of JPEG, all of which must be there
+ *           codestream.c, packets.c  the parts and packets of JPEG 2000
  *
  * Positions are in LPS and mm, as in DICOM, up to the matrix, which is RAS.
  * GDCM sees nothing but compressed pixels. */
@@ -359,17 +361,38 @@ snow_status snow_dicom_palette_read(dicom_reader *reader,
 /* --- codec.c -------------------------------------------------------------- */
 
 /* Checks that the compressed bytes of a frame match the image, by their own
- * header, and begin in a way that codecs accept; narrows them to the code
- * stream.  Errors: SNOW_STATUS_BAD_INPUT. */
+ * header, and that they are whole as far as codecs do not find it; narrows
+ * them to the code stream.  Errors: SNOW_STATUS_BAD_INPUT. */
 snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
                                     const dicom_image *image,
                                     const unsigned char **bytes, size_t *size);
+
+/* "its pixels cannot be decompressed". */
+snow_status snow_dicom_fail_unpack(snow_context *context, const char *syntax);
 
 /* Decodes run lengths (PS3.5, annex G) as planes of bytes; returns false if
  * they do not match the image. */
 bool snow_dicom_unpack_runs(const dicom_image *image,
                             const unsigned char *bytes, size_t size,
                             unsigned char *out);
+
+/* --- entropy.c ------------------------------------------------------------ */
+
+/* Returns whether a JPEG stream of DICOM (not JPEG-LS) is sequential or
+ * lossless and has all its codes, each of which its tables know. */
+bool snow_dicom_jpeg_is_whole(const unsigned char *bytes, size_t size);
+
+/* Returns whether JPEG-LS has the marker of its end: without, some versions of
+ * CharLS read on for ever. */
+bool snow_dicom_jpeg_ls_has_end(const unsigned char *bytes, size_t size);
+
+/* --- codestream.c, packets.c ---------------------------------------------- */
+
+/* Finds whether all tiles of a JPEG 2000 stream are there, and their packets
+ * fill them. Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_dicom_walk_jpeg2000(snow_context *context,
+                                     const unsigned char *bytes, size_t size,
+                                     bool *whole);
 
 /* --- voxels.c ------------------------------------------------------------- */
 

@@ -114,11 +114,16 @@ static bool table_entry(dicom_reader *reader, const dicom_element *pixels,
     return true;
 }
 
+/* Returns whether a fragment begins with JPEG, JPEG 2000, or the table of run
+ * lengths. */
 static bool begins_stream(dicom_reader *reader, const dicom_element *at) {
     unsigned char bytes[12];
     if (snow_seekable_read(reader->store, at->at, bytes, 12) < 12)
         return false;
-    return (bytes[0] == 0xff && (bytes[1] == 0xd8 || bytes[1] == 0x4f)) ||
+    if (!strcmp(reader->syntax, RUN_LENGTHS))
+        return !memcmp(bytes + 1, "\0\0\0\x40\0\0", 7);
+    return !memcmp(bytes, "\xff\xd8\xff", 3) ||
+           !memcmp(bytes, "\xff\x4f\xff\x51", 4) ||
            !memcmp(bytes + 4, "jP  \r\n\x87\n", 8);
 }
 
@@ -133,26 +138,32 @@ static bool begins_frame(dicom_reader *reader, const dicom_element *pixels,
     return begins_stream(reader, fragment(pixels, index));
 }
 
+/* False if the fragments are those of fewer or more frames. */
 static bool find_span(dicom_reader *reader, const dicom_image *image,
                       const dicom_element *pixels, int64_t number, span *out) {
     int64_t count = count_fragments(reader, pixels), frame = -1;
     uint64_t ignored;
-    if (image->frames == 1 || count == image->frames) {
-        *out = image->frames == 1 ? (span){1, count} : (span){number + 1, 1};
-        return count > 0;
-    }
     if (count < image->frames)
         return false;
-    bool table = table_entry(reader, pixels, image->frames - 1, &ignored);
+    *out = (span){number + 1, 1};
+    if (count == image->frames)
+        return true;
+    /* All are of the only frame, whose beginning need not be known. */
+    const bool single = image->frames == 1;
+    bool table =
+        !single && table_entry(reader, pixels, image->frames - 1, &ignored);
+    if (table && table_entry(reader, pixels, image->frames, &ignored))
+        return false;
     *out = (span){0, 0};
     for (int64_t i = 1; i <= count; i++) {
-        if (begins_frame(reader, pixels, i, frame + 1, table))
+        if ((single && i == 1) ||
+            begins_frame(reader, pixels, i, frame + 1, table))
             frame++;
         if (frame == number && !out->count)
             out->first = i;
         out->count += frame == number;
     }
-    return out->count > 0;
+    return out->count > 0 && frame + 1 == image->frames;
 }
 
 /* Concatenates the fragments of a frame. */
@@ -171,14 +182,10 @@ static snow_status gather(dicom_reader *reader, const dicom_element *pixels,
                                     part->length);
     }
     *out = bytes;
-    return SNOW_STATUS_OK;
-}
-
-static snow_status fail_unpack(dicom_reader *reader) {
-    return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
-                     "its pixels cannot be decompressed (transfer syntax %s); "
-                     "it is truncated or damaged",
-                     reader->syntax);
+    if (*size == all)
+        return SNOW_STATUS_OK;
+    snow_release(reader->context, bytes);
+    return snow_dicom_fail_unpack(reader->context, reader->syntax);
 }
 
 #if SNOW_HAVE_GDCM
@@ -242,7 +249,7 @@ static snow_status unpack(dicom_reader *reader, const dicom_image *image,
                         .high = image->high,
                         .is_signed = image->is_signed};
     if (!codec(&frame, bytes, size, out, (size_t)snow_dicom_frame_bytes(image)))
-        return fail_unpack(reader);
+        return snow_dicom_fail_unpack(reader->context, reader->syntax);
     words->stored = frame.stored;
     words->high = frame.high;
     words->is_signed = frame.is_signed;
@@ -283,10 +290,11 @@ static snow_status read_packed(dicom_reader *reader, const dicom_image *image,
                          reader->syntax);
     if (!find_span(reader, image, pixels, number, &where))
         return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
-                         "has %lld compressed pieces of pixels, but frame %lld "
-                         "of %lld is not among them; it is damaged",
+                         "its %lld compressed pieces of pixels are not those "
+                         "of %lld frame%s; it is damaged",
                          (long long)count_fragments(reader, pixels),
-                         (long long)number, (long long)image->frames);
+                         (long long)image->frames,
+                         image->frames == 1 ? "" : "s");
     SNOW_TRY(gather(reader, pixels, where, &bytes, &size));
     snow_status status = SNOW_STATUS_OK;
     if (strcmp(reader->syntax, RUN_LENGTHS) != 0)
@@ -294,7 +302,7 @@ static snow_status read_packed(dicom_reader *reader, const dicom_image *image,
     else if (snow_dicom_unpack_runs(image, bytes, size, out))
         words->planes = true;
     else
-        status = fail_unpack(reader);
+        status = snow_dicom_fail_unpack(reader->context, reader->syntax);
     snow_release(reader->context, bytes);
     return status;
 }
@@ -319,6 +327,6 @@ snow_status snow_dicom_read_words(dicom_reader *reader,
     SNOW_TRY(read_packed(reader, image, pixels, number, out, words));
     if (words->stored < 1 || words->stored > image->allocated ||
         words->high < words->stored - 1 || words->high >= image->allocated)
-        return fail_unpack(reader);
+        return snow_dicom_fail_unpack(reader->context, reader->syntax);
     return SNOW_STATUS_OK;
 }
