@@ -511,6 +511,7 @@ for change, what in (
     write("palette.dcm", data)
     oracle.refuse("palette.dcm", what)
 bit = image(oracle.sample("u1", (8, 8)), BitsAllocated=1, BitsStored=1)
+bit.PixelData = bytes(8)
 write("bit.dcm", bit)
 oracle.refuse("bit.dcm", "pixels of 1 bits are not supported")
 write("odd.dcm", image(small[0], rising[0], PixelSpacing=[0, 0.5]))

@@ -186,14 +186,13 @@ snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
                                     const dicom_image *image,
                                     const unsigned char **bytes, size_t *size) {
     packed_head head;
-    const bool jpeg2000 = !strncmp(syntax, "1.2.840.10008.1.2.4.9", 21);
-    bool known = jpeg2000 ? read_jpeg2000(bytes, size, &head) bool same =
-                                known &&
-                                head.columns == (uint32_t)image->columns &&
-                                head.rows == (uint32_t)image->rows &&
-                                head.samples == (uint32_t)image->samples &&
-                                head.bits <= image->allocated &&
-                                (head.bits > 8) == (image->allocated > 8);
+    bool known = is_jpeg2000(syntax) ? read_jpeg2000(bytes, size, &head)
+                                     : read_jpeg(*bytes, *size, &head);
+    bool same = known && head.columns == (uint32_t)image->columns &&
+                head.rows == (uint32_t)image->rows &&
+                head.samples == (uint32_t)image->samples &&
+                head.bits <= image->allocated &&
+                (head.bits > 8) == (image->allocated > 8);
     if (same && head.unlike)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,

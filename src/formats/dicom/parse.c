@@ -323,6 +323,20 @@ static snow_status walk_element(walk *w, coding how, const head *h, int depth) {
     return SNOW_STATUS_OK;
 }
 
+/* Nothing after the pixels is needed, but pixels once more contradict them:
+ * elements follow in the order of their tags. */
+static snow_status check_after(walk *w, coding how) {
+    size_t have;
+    head h;
+    const unsigned char *at = look(w, &have);
+    if (w->inflater || !parse_head(at, have, how, &h) ||
+        h.tag != DICOM_TAG_PIXELS)
+        return SNOW_STATUS_OK;
+    return snow_fail(w->reader->context, SNOW_STATUS_BAD_INPUT,
+                     "has element (%04x,%04x) twice; it is damaged",
+                     h.tag >> 16, h.tag & 0xffff);
+}
+
 /* Walks elements up to `end`, or a delimiter if that is UINT64_MAX.  The file
  * itself ends with its last byte; blanks after the last element are dropped. */
 static snow_status walk_set(walk *w, coding how, uint64_t end, int depth) {
@@ -345,7 +359,7 @@ static snow_status walk_set(walk *w, coding how, uint64_t end, int depth) {
         }
         SNOW_TRY(walk_element(w, how, &h, depth));
         if (depth == 0 && h.tag == DICOM_TAG_PIXELS)
-            return SNOW_STATUS_OK; /* nothing after it is needed */
+            return check_after(w, how);
     }
 }
 
