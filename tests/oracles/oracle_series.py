@@ -239,6 +239,22 @@ put("r.xmf", START + grid(item("r", "x.bin", more='Format="Binary" '
                          'NumberType="Float" Precision="4" '
                          'Endian="Little"')) + END)
 check("r.xmf")
+# Short is 16 bits, and bytes that follow cause a note.
+(100 * values()).astype("i2").tofile("short.bin")
+for kind in "Short", "UShort":
+    put("s.xmf", START + grid(item("r", "short.bin", more='Format="Binary" '
+                                    f'NumberType="{kind}"')) + END)
+    oracle.tells("s.xmf", type="u" * (kind[0] == "U") + "int16",
+         sum=float((100 * values()).astype("u2" if kind[0] == "U" else
+                                            "i2").sum(dtype="f8")))
+with open("short.bin", "ab") as file:
+    file.write(b"more")
+for more in False, True: # of another attribute
+    put("s.xmf", START + grid("".join(
+        item(name, "short.bin", more='Format="Binary" NumberType="Short"')
+        for name in "rs"[:1 + more])) + END)
+    if ("4 bytes after the data" in oracle.run("s.xmf").stderr) == more:
+        oracle.fail("s.xmf", f"the note on its last bytes, {more}")
 put("n.xmf", START + grid(item("n", "x.h5:/uneven"), '''<Topology
 TopologyType="3DRectMesh" Dimensions="8 10 12"/><Geometry GeometryType="VXVYVZ">
 <DataItem Format="XML">%s</DataItem><DataItem Format="XML">%s</DataItem>

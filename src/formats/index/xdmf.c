@@ -153,7 +153,7 @@ static snow_status read_raw(const xdmf_values *v,
         return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
                          "its sizes are too large for any file; correct them");
     memcpy(array.step, steps + 1, sizeof array.step);
-    array.more = true;
+    array.more = f->attributes > 1; /* their values may stand behind */
     SNOW_TRY(snow_source_open_sibling(f->source, item->text, &data));
     snow_status status = snow_array_read(data, options, &array, info, out);
     snow_source_close(data);

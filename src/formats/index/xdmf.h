@@ -49,6 +49,7 @@ typedef struct xdmf_file {
     bool even_times; /* of a collection: first, step, count; else one each */
     xdmf_item times; /* length 0: none */
     char attribute[64];
+    int64_t attributes; /* in all grids */
     bool cells, vector;
     xdmf_item item;
     char seen[512];

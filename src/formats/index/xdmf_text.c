@@ -75,6 +75,7 @@ static void begin_attribute(xdmf_file *f, const char **attributes) {
               sizeof f->attribute);
     f->cells = snow_xdmf_is(centre, "cell");
     f->vector = snow_xdmf_is(kind, "vector");
+    f->attributes++;
     f->in_attribute =
         !f->now.found &&
         (!f->options->dataset || !strcmp(f->options->dataset, f->attribute));
@@ -94,6 +95,8 @@ static snow_type type_of(const char *kind, int64_t bytes) {
                                                           : SNOW_TYPE_FLOAT32;
     if (snow_xdmf_is(kind, "char") || snow_xdmf_is(kind, "uchar"))
         bytes = 1;
+    if (snow_xdmf_is(kind, "short") || snow_xdmf_is(kind, "ushort"))
+        bytes = 2;
     for (int i = 0; i < 4; i++)
         if (bytes == 1 << i)
             return whole[tolower((unsigned char)*kind) == 'u'][i];
