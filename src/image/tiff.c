@@ -179,24 +179,39 @@ static void widen_line(const tiff_plan *plan, const unsigned char *line,
     }
 }
 
-/* What libtiff warns of while it decodes is damage too. */
+static snow_status read_strips(snow_tiff *file, const tiff_plan *plan,
+                               uint32_t rows, unsigned char *strip,
+                               snow_image *image) {
+    const uint64_t bytes = (uint64_t)TIFFScanlineSize64(file->tiff);
+    for (uint32_t y = 0; y < plan->height; y++) {
+        const uint32_t left = plan->height - y;
+        if (y % rows == 0)
+            SNOW_TRY(snow_tiff_decode(
+                file, TIFFComputeStrip(file->tiff, y, 0), strip,
+                bytes * (left < rows ? left : rows), bytes));
+        widen_line(plan, strip + bytes * (y % rows),
+                   image->pixels + 4 * (size_t)y * plan->width);
+    }
+    return SNOW_STATUS_OK;
+}
+
 static snow_status read_lines(snow_tiff *file, const snow_source *source,
                               const tiff_plan *plan, snow_image *image) {
-    uint64_t bytes = (uint64_t)TIFFScanlineSize64(file->tiff);
-    unsigned char *line = snow_allocate_array(file->context, bytes, 1);
-    bool good = bytes == (uint64_t)plan->width * plan->samples * plan->bits / 8;
-    if (!line)
+    const uint64_t bytes = (uint64_t)TIFFScanlineSize64(file->tiff);
+    uint32_t rows = 0;
+    TIFFGetFieldDefaulted(file->tiff, TIFFTAG_ROWSPERSTRIP, &rows);
+    rows = rows && rows < plan->height ? rows : plan->height;
+    if (bytes != (uint64_t)plan->width * plan->samples * plan->bits / 8)
+        return fail_tiff(file, source);
+    unsigned char *strip = snow_allocate_array(file->context, bytes * rows, 1);
+    if (!strip)
         return SNOW_STATUS_NO_MEMORY;
-    *file->complaint = 0;
-    file->decoding = true;
-    for (uint32_t y = 0; y < plan->height && good; y++) {
-        good =
-            TIFFReadScanline(file->tiff, line, y, 0) == 1 && !*file->complaint;
-        if (good)
-            widen_line(plan, line, image->pixels + 4 * (size_t)y * plan->width);
-    }
-    snow_release(file->context, line);
-    return good ? SNOW_STATUS_OK : fail_tiff(file, source);
+    snow_status status = read_strips(file, plan, rows, strip, image);
+    snow_release(file->context, strip);
+    return status == SNOW_STATUS_OK
+               ? status
+               : snow_fail_within(file->context, status, "%s",
+                                  snow_source_name(source));
 }
 
 static snow_status read_page(snow_tiff *file, const snow_source *source,
