@@ -6,6 +6,7 @@
  *           deflated.c the bytes of deflated ones
  *     |
  *   header  header.c   a file's image, and its frames
+ *           sizes.c    whether it agrees with the pixels
  *     |
  *   series  groups.c   which frames may be slices of one volume
  *           series.c   their order and positions
@@ -320,6 +321,14 @@ void snow_dicom_read_frame(dicom_reader *reader, const dicom_image *image,
  * that of compressed ones shows only when they are looked through. */
 snow_status snow_dicom_find_cut(const dicom_reader *reader,
                                 const dicom_image *image, bool *cut);
+
+/* --- sizes.c -------------------------------------------------------------- */
+
+/* Checks that the file of a reader without pixels can hold those of the image,
+ * and has no more of them. Errors: SNOW_STATUS_BAD_INPUT. */
+snow_status snow_dicom_check_sizes(snow_context *context,
+                                   const dicom_reader *reader,
+                                   const dicom_image *image);
 
 /* --- pixels.c ------------------------------------------------------------- */
 

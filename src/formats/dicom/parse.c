@@ -228,11 +228,6 @@ static snow_status add_element(walk *w, const head *h, size_t *index) {
     return SNOW_STATUS_OK;
 }
 
-/* Elements that follow an element of the list so far are in it. */
-static void close_element(walk *w, size_t index) {
-    w->reader->elements[index].next = w->reader->count;
-}
-
 /* Compressed pixels: a table, then fragments, then a delimiter. */
 static snow_status walk_fragments(walk *w, coding how) {
     head h;
@@ -283,7 +278,7 @@ static snow_status walk_items(walk *w, coding how, uint64_t end, int depth) {
         uint64_t item_end = open ? UINT64_MAX : w->at + h.length;
         SNOW_TRY(add_element(w, &h, &index));
         SNOW_TRY(walk_set(w, how, item_end, depth + 1));
-        close_element(w, index);
+        w->reader->elements[index].next = w->reader->count;
         if (!open)
             w->at = item_end;
     }
@@ -317,7 +312,7 @@ static snow_status walk_element(walk *w, coding how, const head *h, int depth) {
             how = (coding){false, false}; /* PS3.5, 6.2.2, note 2 */
         SNOW_TRY(walk_items(w, how, end, depth));
     }
-    close_element(w, index);
+    w->reader->elements[index].next = w->reader->count;
     if (!open)
         w->at = end;
     return SNOW_STATUS_OK;
