@@ -164,46 +164,99 @@ static snow_status check_rows(snow_tiff *file, uint32_t part, uint64_t size,
     return whole ? SNOW_STATUS_OK : snow_tiff_fail(file);
 }
 
-static bool inflates(snow_context *context, unsigned char *in, tmsize_t count,
-                     uint64_t size) {
+static snow_status inflate_again(snow_tiff *file, unsigned char *in,
+                                 tmsize_t count, uint64_t size) {
     unsigned char out[16384];
     z_stream stream = {.next_in = in, .avail_in = (uInt)count};
-    snow_zlib_use(&stream, context);
-    int result = inflateInit(&stream);
+    snow_zlib_use(&stream, file->context);
+    int result = count > INT_MAX ? Z_DATA_ERROR : inflateInit(&stream);
     while (result == Z_OK) {
         stream.next_out = out;
         stream.avail_out = sizeof out;
         result = inflate(&stream, Z_NO_FLUSH);
     }
     inflateEnd(&stream);
-    return result == Z_STREAM_END && stream.total_out >= size;
+    if (result == Z_MEM_ERROR)
+        return SNOW_STATUS_NO_MEMORY;
+    return result == Z_STREAM_END && stream.total_out >= size
+               ? SNOW_STATUS_OK
+               : snow_tiff_fail(file);
+}
+
+/* Differences of words that are `step` apart in a row, as they were packed with
+ * predictor 2. */
+#define SUBTRACT(type)                                 \
+    for (size_t i = 0; i < bytes / sizeof(type); i++)  \
+    ((type *)out)[i] = (type)(((const type *)row)[i] - \
+                              (i < step ? 0 : ((const type *)row)[i - step]))
+
+static void subtract(const void *row, size_t bytes, int bits, size_t step,
+                     void *out) {
+    if (bits == 8) {
+        SUBTRACT(uint8_t);
+    } else if (bits == 16) {
+        SUBTRACT(uint16_t);
+    } else {
+        SUBTRACT(uint32_t);
+    }
+}
+
+/* Computes the check sum of the packed data from what libtiff made of them; 0,
+ * which is none, if that is not known. */
+static snow_status sum_up(snow_tiff *file, const unsigned char *out,
+                          uint64_t size, uint64_t row_bytes, uLong *sum) {
+    uint16_t predictor = PREDICTOR_NONE, bits = 0, samples = 1, planes = 1;
+    TIFFGetField(file->tiff, TIFFTAG_PREDICTOR, &predictor);
+    TIFFGetFieldDefaulted(file->tiff, TIFFTAG_BITSPERSAMPLE, &bits);
+    TIFFGetFieldDefaulted(file->tiff, TIFFTAG_SAMPLESPERPIXEL, &samples);
+    TIFFGetFieldDefaulted(file->tiff, TIFFTAG_PLANARCONFIG, &planes);
+    const bool differs = predictor == PREDICTOR_HORIZONTAL &&
+                         (bits == 8 || bits == 16 || bits == 32);
+    const bool known = !TIFFIsByteSwapped(file->tiff) &&
+                       (predictor == PREDICTOR_NONE || differs);
+    *sum = known;
+    if (known && !differs)
+        *sum = adler32_z(1, out, (size_t)size);
+    if (!known || !differs)
+        return SNOW_STATUS_OK;
+    unsigned char *row = snow_allocate_array(file->context, row_bytes, 1);
+    if (!row)
+        return SNOW_STATUS_NO_MEMORY;
+    for (uint64_t at = 0; at + row_bytes <= size; at += row_bytes) {
+        subtract(out + at, (size_t)row_bytes, bits,
+                 planes == PLANARCONFIG_SEPARATE ? 1 : samples, row);
+        *sum = adler32_z(*sum, row, (size_t)row_bytes);
+    }
+    snow_release(file->context, row);
+    return SNOW_STATUS_OK;
 }
 
 /* libtiff does not look at the check sum behind data that fill the part, and
  * with libdeflate it leaves their last bytes as they were in memory if the
- * codes are damaged.  Data that were changed afterwards are inflated again. */
+ * codes are damaged.  Data whose sum is not known or differs are inflated
+ * again. */
 static snow_status check_sum(snow_tiff *file, uint32_t part,
-                             const unsigned char *out, uint64_t size) {
+                             const unsigned char *out, uint64_t size,
+                             uint64_t row_bytes) {
     const uint64_t end = TIFFGetStrileOffset(file->tiff, part) +
                          TIFFGetStrileByteCount(file->tiff, part);
-    uint16_t predictor = 1, order = FILLORDER_MSB2LSB;
-    unsigned char sum[4], *in;
+    uint16_t order = FILLORDER_MSB2LSB;
+    unsigned char stored[4], *in;
     tmsize_t count;
-    TIFFGetField(file->tiff, TIFFTAG_PREDICTOR, &predictor);
+    uLong sum;
     TIFFGetFieldDefaulted(file->tiff, TIFFTAG_FILLORDER, &order);
     if (order != FILLORDER_MSB2LSB)
         return SNOW_STATUS_OK;
-    if (predictor == 1 && !TIFFIsByteSwapped(file->tiff) && end >= 4 &&
-        snow_seekable_read(file->bytes, end - 4, sum, 4) == 4 &&
-        adler32_z(1, out, (size_t)size) ==
-            ((uLong)sum[0] << 24 | (uLong)sum[1] << 16 | (uLong)sum[2] << 8 |
-             sum[3]))
+    SNOW_TRY(sum_up(file, out, size, row_bytes, &sum));
+    if (sum && end >= 4 &&
+        snow_seekable_read(file->bytes, end - 4, stored, 4) == 4 &&
+        sum == ((uLong)stored[0] << 24 | (uLong)stored[1] << 16 |
+                (uLong)stored[2] << 8 | stored[3]))
         return SNOW_STATUS_OK;
     SNOW_TRY(read_packed(file, part, 0, &in, &count));
-    const bool whole =
-        count <= INT_MAX && inflates(file->context, in, count, size);
+    snow_status status = inflate_again(file, in, count, size);
     snow_release(file->context, in);
-    return whole ? SNOW_STATUS_OK : snow_tiff_fail(file);
+    return status;
 }
 
 snow_status snow_tiff_decode(snow_tiff *file, uint32_t part, void *out,
@@ -224,7 +277,7 @@ snow_status snow_tiff_decode(snow_tiff *file, uint32_t part, void *out,
         return check_rows(file, part, size, row_bytes);
     case COMPRESSION_DEFLATE:
     case COMPRESSION_ADOBE_DEFLATE:
-        return check_sum(file, part, out, size);
+        return check_sum(file, part, out, size, row_bytes);
     default:
         return SNOW_STATUS_OK;
     }
