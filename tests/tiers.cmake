@@ -66,7 +66,7 @@ set(SNOW_COSTS
     cli_turntable 41 oracle_vtk 40 cli_render 39 test_stop 37
     test_combine 35 cli_bench 34 cli_interrupt 34
     cli_documents 31 test_raycast 31 cli_matrix 31
-    oracle_dicom 31 test_pipeline 28 cli_measurements 28
+    oracle_damage 40 oracle_dicom 31 test_pipeline 28 cli_measurements 28
     test_ranks_open 28 test_shear_warp 27 test_insitu 26
     test_model_picture 22 test_histogram 22 oracle_tiff 22
     cli_real 22 test_model_encodings 20 test_truth 25 test_same_bits 25
