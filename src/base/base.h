@@ -53,6 +53,9 @@ struct snow_context {
                                 reader says so */
     bool inflates; /* and whether that is a stream of gzip or zlib, in which a
                       voxel is reached by unpacking all before it */
+    char lost[SNOW_MESSAGE_BYTES / 2]; /* what could not be looked up or read
+                                          of the file that is being opened
+                                          (io/lookup.h); "": nothing */
     char message[SNOW_MESSAGE_BYTES];
 };
 

@@ -12,6 +12,7 @@
 #include "formats/unsupported.h"
 #include "formats/zarr/zarr.h"
 #include "io/folder.h"
+#include "io/lookup.h"
 #include "phantom/phantom.h"
 #include "volume/mask.h"
 
@@ -228,7 +229,7 @@ static snow_status read_folder(snow_context *context, const char *path,
                                const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
     SNOW_TRY(snow_component_check(context, false, options));
-    if (!snow_zarr_is(path))
+    if (!snow_zarr_is(context, path))
         return snow_stack_read(context, path, options, snow_format_of_name,
                                info, out);
     SNOW_TRY(check_choice(context, &snow_format_zarr, options));
@@ -312,7 +313,7 @@ static snow_status open_named_path(snow_context *context, const char *path,
     if (!strncmp(path, PHANTOM, strlen(PHANTOM)))
         return open_phantom(context, path + strlen(PHANTOM), options, info,
                             out);
-    const char *inside = snow_data_set_in(path);
+    const char *inside = snow_data_set_in(context, path);
     char *header;
     if (inside)
         return open_inside(context, path, inside, depth, options, info, out);
@@ -323,7 +324,7 @@ static snow_status open_named_path(snow_context *context, const char *path,
         snow_release(context, header);
         return status;
     }
-    if (snow_is_folder(path) || snow_is_pattern(path))
+    if (snow_is_folder(context, path) || snow_is_pattern(context, path))
         return open_stack(context, path, options, info, out);
     return open_file(context, path, depth, options, info, out);
 }
@@ -363,23 +364,32 @@ static snow_status open_path(snow_context *context, const char *path,
                                 out);
 }
 
+/* What could not be looked up or read is a failure, even if the reader has gone
+ * on without it.  `volume` is NULL if there is none. */
+static snow_status finish_open(snow_context *context, snow_status status,
+                               snow_volume *volume, snow_volume **out) {
+    status = snow_lookup_end(context, status);
+    if (status == SNOW_STATUS_OK && out)
+        *out = volume;
+    else
+        snow_volume_close(volume);
+    return status;
+}
+
 static snow_status open_any(snow_context *context, const char *path,
                             const snow_volume_options *given,
                             snow_volume_info *info, snow_volume **out) {
     snow_volume_options options;
+    snow_volume *volume = NULL, **wanted = out ? &volume : NULL;
     SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_options, given, &options));
+    snow_lookup_begin(context);
     snow_status status =
         snow_mask_asked(&options)
-            ? snow_masked_open(context, path, &options, open_path, info, out)
-            : open_path(context, path, &options, info, out);
-    if (status != SNOW_STATUS_OK || !out || !options.label_table)
-        return status;
-    status = snow_label_table_read(context, options.label_table, *out);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(*out);
-        *out = NULL;
-    }
-    return status;
+            ? snow_masked_open(context, path, &options, open_path, info, wanted)
+            : open_path(context, path, &options, info, wanted);
+    if (status == SNOW_STATUS_OK && volume && options.label_table)
+        status = snow_label_table_read(context, options.label_table, volume);
+    return finish_open(context, status, volume, out);
 }
 
 /* A slab of a picture is read under the picture's monitor. */
@@ -421,10 +431,13 @@ static snow_status open_bytes(input *in, const snow_volume_options *given,
                          "them; open them and take snow_volume_mask or "
                          "snow_volume_clip",
                          in->path);
+    snow_volume *volume = NULL;
     snow_monitor_begin_reading(in->context, &monitor);
+    snow_lookup_begin(in->context);
+    snow_status status = snow_components_read(in->context, read_input, in,
+                                              false, &options, &info, &volume);
     return snow_monitor_end(&monitor,
-                            snow_components_read(in->context, read_input, in,
-                                                 false, &options, &info, out));
+                            finish_open(in->context, status, volume, out));
 }
 
 snow_status snow_volume_open_memory(snow_context *context, const char *name,

@@ -64,7 +64,8 @@ static snow_status choose_files(stack *s, const char *path,
                          kept, s->format->name);
     if (!kept) {
         char name[256];
-        if (snow_is_folder(path) && snow_folder_below(path, name, sizeof name))
+        if (snow_is_folder(s->context, path) &&
+            snow_folder_below(path, name, sizeof name))
             return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
                              "has no slices itself, only folders such as %s; "
                              "name one of them",

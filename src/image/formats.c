@@ -8,6 +8,7 @@
 #include "base/module.h"
 #include "base/monitor.h"
 #include "image/overlay.h"
+#include "io/lookup.h"
 
 #include <string.h>
 #include <sys/stat.h>
@@ -275,9 +276,15 @@ static snow_status read_picture(snow_source *source, snow_image **out) {
 snow_status snow_image_load(snow_context *context, const char *path,
                             snow_image **out) {
     snow_source *source = NULL;
+    snow_image *image = NULL;
+    snow_lookup_begin(context);
     SNOW_TRY(snow_source_open(context, path, &source));
-    snow_status status = read_picture(source, out);
+    snow_status status = snow_lookup_end(context, read_picture(source, &image));
     snow_source_close(source);
+    if (status == SNOW_STATUS_OK)
+        *out = image;
+    else
+        snow_image_free(image);
     return status;
 }
 

@@ -3,6 +3,8 @@
  * by value. */
 #include "io/folder.h"
 
+#include "io/lookup.h"
+
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
@@ -21,29 +23,33 @@ const char *snow_path_name(const char *path) {
 /* The most digits that cannot overflow. */
 #define MOST_DIGITS 18
 
-bool snow_is_there(const char *path, size_t length) {
+/* 0: nothing, or the look-up has failed. */
+static mode_t mode_of(snow_context *context, const char *path) {
+    mode_t mode = 0;
+    return snow_look_for(context, path, &mode) == SNOW_STATUS_OK ? mode : 0;
+}
+
+bool snow_is_there(snow_context *context, const char *path, size_t length) {
     char whole[4096];
-    struct stat about;
     if (length >= sizeof whole)
         return false;
     memcpy(whole, path, length);
     whole[length] = 0;
-    return stat(whole, &about) == 0;
+    return mode_of(context, whole) != 0;
 }
 
-const char *snow_data_set_in(const char *path) {
+const char *snow_data_set_in(snow_context *context, const char *path) {
     const char *found = NULL;
     for (const char *at = path; (at = strstr(at, ":/")); at++)
         found = at;
-    if (!found || snow_is_there(path, strlen(path)) ||
-        !snow_is_there(path, (size_t)(found - path)))
+    if (!found || snow_is_there(context, path, strlen(path)) ||
+        !snow_is_there(context, path, (size_t)(found - path)))
         return NULL;
     return found + 1;
 }
 
-bool snow_is_folder(const char *path) {
-    struct stat about;
-    return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
+bool snow_is_folder(snow_context *context, const char *path) {
+    return S_ISDIR(mode_of(context, path));
 }
 
 /* The length of "%d", "%5d" or "%05d"; 0 for other text. */
@@ -54,13 +60,12 @@ static size_t number_letters(const char *text) {
     return digits <= 2 && text[1 + digits] == 'd' ? digits + 2 : 0;
 }
 
-bool snow_is_pattern(const char *path) {
-    struct stat about;
+bool snow_is_pattern(snow_context *context, const char *path) {
     const char *part = snow_path_name(path);
     bool signs = strpbrk(part, "*?") != NULL;
     for (const char *at = part; *at && !signs; at++)
         signs = number_letters(at) > 0;
-    return signs && stat(path, &about) != 0;
+    return signs && mode_of(context, path) == 0;
 }
 
 /* The depth of recursion is the number of '*' and numbers in the pattern. */
@@ -131,8 +136,13 @@ static snow_status add_name(snow_context *context, names *all,
     char *path = all->block + all->used;
     memcpy(path, folder, folder_length);
     memcpy(path + folder_length, name, length);
-    struct stat about;
-    if (stat(path, &about) || !S_ISREG(about.st_mode))
+    mode_t mode = 0;
+    /* Whoever opens a link that leads nowhere fails: it may be a slice that has
+     * not been fetched. */
+    const bool dangles = snow_is_dangling(path);
+    if (!dangles)
+        SNOW_TRY(snow_look_at_given(context, path, &mode));
+    if (!dangles && !S_ISREG(mode))
         return SNOW_STATUS_OK; /* not stored: the next name overwrites it */
     all->used += folder_length + length;
     all->count++;
@@ -146,9 +156,8 @@ static snow_status collect_names(snow_context *context, DIR *stream,
         errno = 0;
         const struct dirent *entry = readdir(stream);
         if (!entry && errno)
-            return snow_fail(
-                context, SNOW_STATUS_BAD_INPUT,
-                "cannot read the folder to its end; check the disk");
+            return snow_lookup_fail(context, folder_length ? folder : ".",
+                                    "listed to its end");
         if (!entry)
             return SNOW_STATUS_OK;
         if (*entry->d_name == '.' ||
@@ -186,9 +195,7 @@ static snow_status list_at(snow_context *context, char *folder,
                            const char *pattern, snow_folder *out) {
     DIR *stream = opendir(*folder ? folder : ".");
     if (!stream)
-        return snow_fail(
-            context, SNOW_STATUS_BAD_INPUT,
-            "cannot open the folder; check its name and permissions");
+        return snow_lookup_fail(context, *folder ? folder : ".", "listed");
     size_t length = strlen(folder);
     if (length && folder[length - 1] != '/')
         folder[length++] = '/';
@@ -206,7 +213,7 @@ static snow_status list_at(snow_context *context, char *folder,
  */
 snow_status snow_folder_list(snow_context *context, const char *path,
                              snow_folder *out) {
-    bool whole = snow_is_folder(path);
+    bool whole = snow_is_folder(context, path);
     const char *pattern = whole ? "" : snow_path_name(path);
     size_t length = whole ? strlen(path) : (size_t)(pattern - path);
     char *folder = snow_allocate(context, length + 2);

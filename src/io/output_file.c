@@ -194,13 +194,13 @@ static snow_status keep_paths(snow_output_file *file, const char *path) {
 }
 
 /* Closes a file opened here. Network file systems report a full disk only now.
- */
+ * A signal in between does no harm, as the file is synced. */
 static int close_file(snow_output_file *file) {
     int descriptor = file->descriptor;
     file->descriptor = -1;
     if (descriptor < 0 || descriptor == STDOUT_FILENO)
         return 0;
-    return close(descriptor) ? errno : 0;
+    return close(descriptor) && errno != EINTR ? errno : 0;
 }
 
 static snow_status fail_to_name(const snow_output_file *file, int number) {
@@ -255,12 +255,19 @@ static void sync_folder(snow_output_file *file) {
     close(folder);
 }
 
+/* Returns an error number or 0, also where the file system has no such thing.
+ */
+static int sync_file(const snow_output_file *file) {
+    while (fsync(file->descriptor))
+        if (errno != EINTR)
+            return errno == EINVAL ? 0 : errno;
+    return 0;
+}
+
 snow_status snow_output_file_finish(snow_output_file *file) {
     const bool through = !file->unnamed && !file->temporary;
-    int number = 0;
-    if (!through && fsync(file->descriptor) && errno != EINVAL)
-        number = errno;
-    else if (file->unnamed)
+    int number = through ? 0 : sync_file(file);
+    if (!number && file->unnamed)
         SNOW_TRY(name_file(file));
     const bool named = !through && !file->unnamed && !file->temporary;
     int closing = close_file(file);

@@ -53,6 +53,11 @@ snow_status snow_source_open_sibling(const snow_source *source,
 snow_status snow_source_open_sibling_as_is(const snow_source *source,
                                            const char *name, snow_source **out);
 
+/* Whether there is a file whose name the reader has made up, beside that of
+ * `source`.  Errors: as above, and a look-up that fails (io/lookup.h). */
+snow_status snow_source_look_for_sibling(const snow_source *source,
+                                         const char *name, bool *is_there);
+
 /* How many files have led to this one, each named by the one before; 0 at
  * first. */
 int snow_source_depth(const snow_source *source);

@@ -4,11 +4,10 @@
  * A name on the command line may be a pipe, and "-" is standard input; a name
  * in a header, which is untrusted, must be a regular file. */
 #include "io/filters/filter.h"
+#include "io/lookup.h"
 #include "io/source_internal.h"
 
-#include <errno.h>
 #include <fcntl.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -37,14 +36,8 @@ static snow_status unpack_gzip(snow_source *source) {
     return SNOW_STATUS_OK;
 }
 
-/* strerror_r, as strerror's buffer is shared by all threads. */
 static snow_status fail_by_errno(snow_source *source) {
-    char why[128] = "";
-    strerror_r(errno, why, sizeof why);
-    return snow_fail(source->context, SNOW_STATUS_BAD_INPUT,
-                     "%s: cannot be opened: %s; check the name and the "
-                     "permissions",
-                     source->name, why);
+    return snow_lookup_fail(source->context, source->name, "opened");
 }
 
 /* Rejects what is not a file with data. */
@@ -232,6 +225,17 @@ snow_status snow_source_path_beside(const snow_source *source, const char *name,
     memcpy(path + folder, name, length + 1);
     *out = path;
     return SNOW_STATUS_OK;
+}
+
+snow_status snow_source_look_for_sibling(const snow_source *source,
+                                         const char *name, bool *is_there) {
+    char *path = NULL;
+    mode_t mode = 0;
+    SNOW_TRY(snow_source_path_beside(source, name, &path));
+    snow_status status = snow_look_for(source->context, path, &mode);
+    snow_release(source->context, path);
+    *is_there = mode != 0;
+    return status;
 }
 
 static snow_status open_beside(const snow_source *source, const char *name,

@@ -340,14 +340,15 @@ snow_status snow_plotfile_header(snow_context *context, const char *path,
     size_t got = 0, length = strlen(path) + sizeof "/Header";
     snow_source *source;
     *out = NULL;
-    if (!snow_is_folder(path))
+    if (!snow_is_folder(context, path))
         return SNOW_STATUS_OK;
     char *name = snow_allocate(context, length);
     if (!name)
         return SNOW_STATUS_NO_MEMORY;
     snprintf(name, length, "%s/Header", path);
     snow_status status = SNOW_STATUS_OK;
-    if (snow_is_there(name, strlen(name)) && !snow_is_folder(name)) {
+    if (snow_is_there(context, name, strlen(name)) &&
+        !snow_is_folder(context, name)) {
         status = snow_source_open(context, name, &source);
         if (status == SNOW_STATUS_OK) {
             status = snow_source_peek(source, bytes, sizeof bytes, &got);

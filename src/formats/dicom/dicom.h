@@ -28,6 +28,7 @@
 
 #include "formats/format.h"
 #include "io/folder.h"
+#include "io/lookup.h"
 #include "io/seekable.h"
 
 /* What distinguishes images at one position; the first difference counts:

@@ -124,7 +124,8 @@ static snow_status add_path(collection *c, char *path, const char *series) {
     return status;
 }
 
-/* A file that is not DICOM, perhaps truncated, or that cannot be read. */
+/* A file that is not DICOM, perhaps truncated, or damaged.  One that cannot be
+ * opened or read ends all in any case (io/lookup.h). */
 static snow_status add_scrap(collection *c, const char *path,
                              snow_status status, size_t bytes) {
     bool named = snow_format_has_name(&snow_format_dicom, path);
@@ -153,6 +154,8 @@ static snow_status add_file(collection *c, char *path, const char *series) {
     size_t bytes;
     snow_status status = probe(c->context, path, &is, &bytes);
     status = is ? add_path(c, path, series) : add_scrap(c, path, status, bytes);
+    if (c->gaps)
+        snow_lookup_begin(c->context);
     if (!c->gaps || status != SNOW_STATUS_BAD_INPUT)
         return status;
     snow_notify(c->context, "%.200s; it is left out",
@@ -284,6 +287,8 @@ snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
                                   snow_volume_info *info, snow_volume **out) {
     collection c = {.context = context, .gaps = options->allow_gaps};
     snow_status status = SNOW_STATUS_OK;
+    if (c.gaps) /* each file is looked at again */
+        snow_lookup_begin(context);
     for (size_t i = 0; i < files->count && status == SNOW_STATUS_OK; i++) {
         snow_monitor_report(context->monitor, SNOW_STAGE_READ, (double)i,
                             (double)files->count * DICOM_HEADER_SHARE);
@@ -308,26 +313,25 @@ snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
 
 /* --- one file ------------------------------------------------------------- */
 
-/* Lists the files of the folder that a path is in, including itself; an empty
- * list if it cannot be read. */
-static void list_siblings(snow_context *context, const char *path,
-                          snow_folder *out) {
+/* Lists the files of the folder that a path is in, including itself. */
+static snow_status list_siblings(snow_context *context, const char *path,
+                                 snow_folder *out) {
     const char *slash = strrchr(path, '/');
     size_t length = slash ? (size_t)(slash - path) + 1 : 0;
     char *folder = snow_allocate_clear(context, length + 2);
-    *out = (snow_folder){.context = context};
     if (!folder)
-        return;
+        return SNOW_STATUS_NO_MEMORY;
     memcpy(folder, slash ? path : ".", slash ? length : 1);
-    if (snow_folder_list(context, folder, out) != SNOW_STATUS_OK)
-        *out = (snow_folder){.context = context};
+    snow_status status = snow_folder_list(context, folder, out);
     snow_release(context, folder);
+    return status;
 }
 
 /* Adds the images of the same series in the folder, except the given file,
- * which is there already.  One that cannot be read may be a slice; a warning
+ * which is there already.  One that is damaged may be a slice; a warning
  * reports it. */
-static void add_siblings(collection *c, const char *path, snow_folder *files) {
+static snow_status add_siblings(collection *c, const char *path,
+                                snow_folder *files) {
     const char *series = c->images[0]->series;
     const char *first = NULL;
     size_t unread = 0;
@@ -336,6 +340,8 @@ static void add_siblings(collection *c, const char *path, snow_folder *files) {
         if (strcmp(snow_path_name(file), snow_path_name(path)) == 0)
             continue;
         snow_status status = add_file(c, file, series);
+        if (status == SNOW_STATUS_NO_MEMORY)
+            return status;
         if (status != SNOW_STATUS_OK && !unread++)
             first = snow_path_name(file);
     }
@@ -346,6 +352,7 @@ static void add_siblings(collection *c, const char *path, snow_folder *files) {
                     unread, unread > 1 ? "s" : "", first,
                     unread > 1 ? ", ..." : "");
     warn_scraps(c);
+    return SNOW_STATUS_OK;
 }
 
 /* Keeps the time of a stack that contains the given file; returns false if
@@ -363,26 +370,29 @@ static bool keep_its_time(dicom_stack *stack, dicom_frame *frames) {
     return true;
 }
 
-/* Returns whether the frames of the folder's files form one volume with the
- * given one. */
-static bool gather_stack(collection *c, dicom_stack *out) {
+/* *made: the frames of the folder's files form one volume with the given
+ * one. */
+static snow_status gather_stack(collection *c, dicom_stack *out, bool *made) {
     dicom_group *groups =
         snow_allocate_array(c->context, c->frame_count, sizeof *groups);
     if (!groups)
-        return false;
-    bool made = false;
+        return SNOW_STATUS_NO_MEMORY;
+    snow_status status = SNOW_STATUS_OK;
     size_t count = snow_dicom_group(c->frames, c->frame_count, groups);
-    for (size_t i = 0; i < count && !made; i++) {
+    *made = false;
+    for (size_t i = 0; i < count && !*made && status != SNOW_STATUS_NO_MEMORY;
+         i++) {
         dicom_frame *frames = c->frames + groups[i].first;
-        if (snow_dicom_stack(c->context, frames, groups[i].count, c->gaps,
-                             out) != SNOW_STATUS_OK)
+        status =
+            snow_dicom_stack(c->context, frames, groups[i].count, c->gaps, out);
+        if (status != SNOW_STATUS_OK)
             continue;
-        made = keep_its_time(out, frames);
-        if (!made)
+        *made = keep_its_time(out, frames);
+        if (!*made)
             snow_dicom_stack_free(out);
     }
     snow_release(c->context, groups);
-    return made;
+    return status == SNOW_STATUS_NO_MEMORY ? status : SNOW_STATUS_OK;
 }
 
 /* Reads the volume that a slice belongs to.  *done is false if there is none,
@@ -396,12 +406,14 @@ static snow_status read_with_siblings(collection *c, snow_source *source,
     const dicom_frame alone = c->frames[0];
     snow_folder files;
     dicom_stack stack;
-    snow_status status = SNOW_STATUS_OK;
+    bool made = false;
     const char *path = snow_source_name(source);
-    list_siblings(c->context, path, &files);
-    add_siblings(c, path, &files);
+    SNOW_TRY(list_siblings(c->context, path, &files));
+    snow_status status = add_siblings(c, path, &files);
+    if (status == SNOW_STATUS_OK && c->frame_count > 1)
+        status = gather_stack(c, &stack, &made);
     *done = false;
-    if (c->frame_count > 1 && gather_stack(c, &stack)) {
+    if (made) {
         *done = stack.places > 1;
         if (*done) {
             snow_notify(
@@ -411,7 +423,7 @@ static snow_status read_with_siblings(collection *c, snow_source *source,
             status = snow_dicom_read_stack(&input, &stack, options, info, out);
         }
         snow_dicom_stack_free(&stack);
-    } else if (c->frame_count > 1) {
+    } else if (status == SNOW_STATUS_OK && c->frame_count > 1) {
         snow_notify(c->context,
                     "is used alone: the slices of its series in its folder do "
                     "not form a volume; open the folder to see why");

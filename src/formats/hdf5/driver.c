@@ -94,7 +94,9 @@ static haddr_t get_size(const H5FD_t *base, H5FD_mem_t type) {
 }
 
 /* Addresses beyond the end of the file read as zeros, as with libhdf5's own
- * drivers, except for voxels, which are missing.  The size is limited to what a
+ * drivers, except for voxels, which are missing.  So do structures that cannot
+ * be read, where libhdf5 would lose memory if it knew; the failure is kept
+ * (io/lookup.h).  The size is limited to what a
  * structure of the format needs: a damaged length may be 4 GB. */
 static herr_t read_bytes(H5FD_t *base, H5FD_mem_t type, hid_t transfer,
                          haddr_t from, size_t size, void *bytes) {

@@ -8,6 +8,7 @@
 #include "formats/metaimage/metaimage.h"
 #include "formats/ascii.h"
 #include "formats/write.h"
+#include "io/lookup.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -232,11 +233,13 @@ static snow_status read_detached(const reading *r, snow_volume **out) {
     snow_status status = open_data(source, header, header->data, &data);
     /* The name of a file, as far as the header has it. */
     if (status == SNOW_STATUS_BAD_INPUT && *header->data &&
-        !strncmp("LOCAL", header->data, strlen(header->data)))
+        !strncmp("LOCAL", header->data, strlen(header->data))) {
+        snow_lookup_begin(snow_source_context(source)); /* this says more */
         return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
                          "its data file \"%s\" cannot be opened; the header "
                          "may be truncated within LOCAL",
                          header->data);
+    }
     SNOW_TRY(status);
     status = read_whole(data, r, out);
     snow_source_close(data);

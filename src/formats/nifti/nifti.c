@@ -148,11 +148,16 @@ static snow_status open_other(const snow_source *source, const char *wanted,
             bool upper = letters[i] >= 'A' && letters[i] <= 'Z';
             letters[i] = (char)(upper ? wanted[i] - 'a' + 'A' : wanted[i]);
         }
-        for (int attempt = 0; attempt < 2 && status == SNOW_STATUS_BAD_INPUT;
+        bool is_there = false;
+        status = SNOW_STATUS_OK;
+        for (int attempt = 0;
+             attempt < 2 && !is_there && status == SNOW_STATUS_OK;
              attempt++, packed = !packed) {
             memcpy(letters + 3, packed ? ".gz" : "", packed ? 4 : 1);
-            status = snow_source_open_sibling(source, name, out);
+            status = snow_source_look_for_sibling(source, name, &is_there);
         }
+        if (status == SNOW_STATUS_OK)
+            status = snow_source_open_sibling(source, name, out);
     }
     snow_release(context, name);
     return status;

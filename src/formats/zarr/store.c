@@ -6,10 +6,12 @@
 #include "base/monitor.h"
 #include "formats/zarr/zarr.h"
 #include "io/folder.h"
+#include "io/lookup.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,31 +67,27 @@ static void open_record(const zarr_store *store, const char *name,
 
 /* --- files ---------------------------------------------------------------- */
 
-static snow_status fail_by_errno(const zarr_file *file) {
-    char why[128] = "";
-    strerror_r(errno, why, sizeof why);
-    return snow_fail(file->store->context, SNOW_STATUS_BAD_INPUT,
-                     "%s: cannot be opened: %s; check its permissions",
-                     file->name, why);
+static snow_status fail_by_errno(const zarr_file *file, const char *done) {
+    return snow_lookup_fail(file->store->context, file->name, done);
 }
 
 /* Checks the kind first, since opening a device can have side effects. */
 static snow_status open_file(zarr_file *out) {
     struct stat about;
-    if (stat(out->name, &about))
-        return errno == ENOENT || errno == ENOTDIR ? SNOW_STATUS_OK
-                                                   : fail_by_errno(out);
-    if (!S_ISREG(about.st_mode))
+    mode_t mode;
+    SNOW_TRY(snow_look_for(out->store->context, out->name, &mode));
+    if (!mode)
+        return SNOW_STATUS_OK;
+    if (!S_ISREG(mode))
         return snow_fail(out->store->context, SNOW_STATUS_BAD_INPUT,
                          "%s: is not a regular file, which is required here; "
                          "copy the array again",
                          out->name);
     out->descriptor =
         open(out->name, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
-    if (out->descriptor < 0)
-        return fail_by_errno(out);
-    if (fstat(out->descriptor, &about) || !S_ISREG(about.st_mode)) {
-        snow_status status = fail_by_errno(out);
+    if (out->descriptor < 0 || fstat(out->descriptor, &about) ||
+        !S_ISREG(about.st_mode)) {
+        snow_status status = fail_by_errno(out, "opened");
         snow_zarr_close(out);
         return status;
     }
@@ -128,7 +126,9 @@ snow_status snow_zarr_read(const zarr_file *file, uint64_t first,
                   (off_t)(first + done));
         if (got < 0 && errno == EINTR)
             continue;
-        if (got <= 0)
+        if (got < 0)
+            return fail_by_errno(file, "read");
+        if (got == 0)
             return snow_fail(file->store->context, SNOW_STATUS_BAD_INPUT,
                              "%s: cannot be read to the end; check the disk",
                              file->name);
@@ -187,23 +187,27 @@ static snow_status list_records(const zarr_store *store, const char *path,
 
 static snow_status list_folder(const zarr_store *store, const char *path,
                                name_list *list) {
-    char folder[2 * ZARR_PATH_BYTES];
-    snprintf(folder, sizeof folder, "%s/%s", store->folder, path);
+    char folder[2 * ZARR_PATH_BYTES + 1], whole[sizeof folder + NAME_MAX + 1];
+    const int length =
+        snprintf(folder, sizeof folder, "%s/%s", store->folder, path);
     DIR *stream = opendir(folder);
     if (!stream)
-        return snow_fail(store->context, SNOW_STATUS_BAD_INPUT,
-                         "%s: the folder cannot be opened; check its "
-                         "permissions",
-                         folder);
+        return snow_lookup_fail(store->context, folder, "listed");
+    const struct dirent *entry;
     snow_status status = SNOW_STATUS_OK;
-    for (const struct dirent *entry;
-         status == SNOW_STATUS_OK && (entry = readdir(stream));) {
-        struct stat about;
-        if (!fstatat(dirfd(stream), entry->d_name, &about, 0) &&
-            S_ISDIR(about.st_mode))
+    while (status == SNOW_STATUS_OK && (errno = 0, entry = readdir(stream))) {
+        mode_t mode = 0;
+        if (*entry->d_name == '.')
+            continue;
+        snprintf(whole, sizeof whole, "%s%s%s", folder,
+                 folder[length - 1] == '/' ? "" : "/", entry->d_name);
+        status = snow_look_at_given(store->context, whole, &mode);
+        if (status == SNOW_STATUS_OK && S_ISDIR(mode))
             status =
                 add_name(store, list, entry->d_name, strlen(entry->d_name));
     }
+    if (status == SNOW_STATUS_OK && errno)
+        status = snow_lookup_fail(store->context, folder, "listed to its end");
     closedir(stream);
     return status;
 }

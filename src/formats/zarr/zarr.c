@@ -29,22 +29,22 @@ static size_t path_letters(const char *path) {
     return length;
 }
 
-static bool has_marks(const char *path, size_t length) {
+static bool has_marks(snow_context *context, const char *path, size_t length) {
     char mark[ZARR_PATH_BYTES + 16];
     for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
         int size =
             snprintf(mark, sizeof mark, "%.*s/%s", (int)length, path, marks[i]);
         if (size > 0 && (size_t)size < sizeof mark &&
-            snow_is_there(mark, (size_t)size))
+            snow_is_there(context, mark, (size_t)size))
             return true;
     }
     return false;
 }
 
-bool snow_zarr_is(const char *path) {
+bool snow_zarr_is(snow_context *context, const char *path) {
     size_t length = path_letters(path);
-    return length < ZARR_PATH_BYTES && snow_is_folder(path) &&
-           (has_marks(path, length) ||
+    return length < ZARR_PATH_BYTES && snow_is_folder(context, path) &&
+           (has_marks(context, path, length) ||
             (length > 5 && !strncmp(path + length - 5, ".zarr", 5)));
 }
 
@@ -64,10 +64,11 @@ static bool hides_above(const char *path, size_t length) {
 
 /* The length of a path up to the highest group above it; the full length if
  * there is none. */
-static size_t find_root(const char *path, size_t length) {
+static size_t find_root(snow_context *context, const char *path,
+                        size_t length) {
     for (int i = 0; i < MOST_ABOVE && !hides_above(path, length); i++) {
         size_t above = last_part(path, length) - 1;
-        if (!above || !has_marks(path, above))
+        if (!above || !has_marks(context, path, above))
             break;
         length = above;
     }
@@ -83,12 +84,13 @@ static snow_status open_store(snow_context *context, const char *path,
     size_t length = path_letters(path);
     if (hides_above(path, length) && realpath(path, whole)) {
         size_t real = path_letters(whole);
-        if (find_root(whole, real) < real) {
+        if (find_root(context, whole, real) < real) {
             path = whole;
             length = real;
         }
     }
-    size_t root = length < ZARR_PATH_BYTES ? find_root(path, length) : length;
+    size_t root =
+        length < ZARR_PATH_BYTES ? find_root(context, path, length) : length;
     size_t skip = root == length ? length : root + 1;
     while (dataset && *dataset == '/')
         dataset++;

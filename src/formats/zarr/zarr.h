@@ -271,7 +271,7 @@ snow_status snow_zarr_fill(const zarr_box *box, unsigned char *voxels);
 
 /* True for a folder with a Zarr array or group, and for a path that looks like
  * one by its name. */
-bool snow_zarr_is(const char *path);
+bool snow_zarr_is(snow_context *context, const char *path);
 
 /* Reads as a format does, for a folder. */
 snow_status snow_zarr_read_folder(snow_context *context, const char *path,

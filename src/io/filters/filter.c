@@ -6,6 +6,7 @@
 #include "io/filters/filter.h"
 
 #include "base/monitor.h"
+#include "io/lookup.h"
 
 #include <errno.h>
 #include <string.h>
@@ -144,33 +145,38 @@ static snow_status pull_file(snow_filter_stage *filter, void *bytes,
     do
         count = read(((file_filter *)filter)->descriptor, bytes, size);
     while (count < 0 && errno == EINTR);
-    if (count < 0) {
-        char why[128] = "";
-        strerror_r(errno, why, sizeof why);
-        return snow_fail(filter->context, SNOW_STATUS_BAD_INPUT,
-                         "%s: cannot be read: %s; check the disk and the "
-                         "permissions",
-                         filter->name, why);
-    }
+    if (count < 0)
+        return snow_lookup_fail(filter->context, filter->name, "read");
     filter->context->bytes_read += (uint64_t)count;
     *got = (size_t)count;
     return snow_monitor_read(filter->context, (uint64_t)count);
 }
 
-/* A read that fails returns nothing, like one behind the end: callers that need
- * the bytes reject both. */
+/* A read that fails returns nothing, like one behind the end; the failure is
+ * kept (io/lookup.h). */
 static size_t look_in_file(snow_filter_stage *filter, uint64_t from,
                            void *bytes, size_t size) {
     const file_filter *file = (file_filter *)filter;
     size_t done = 0;
-    if (from > (uint64_t)filter->size)
+    if (from >= (uint64_t)filter->size)
         return 0;
+    if (size > (uint64_t)filter->size - from)
+        size = (size_t)((uint64_t)filter->size - from);
     while (done < size) {
         ssize_t count = pread(file->descriptor, (unsigned char *)bytes + done,
                               snow_monitor_chunk(filter->context, size - done),
                               file->begin + (off_t)(from + done));
         if (count < 0 && errno == EINTR)
             continue;
+        if (count < 0)
+            (void)snow_lookup_fail(filter->context, filter->name, "read");
+        else if (count == 0) /* callers ask for no byte behind the end */
+            (void)snow_lookup_keep(
+                filter->context,
+                snow_fail(filter->context, SNOW_STATUS_BAD_INPUT,
+                          "%s: has become shorter while it was read; wait "
+                          "until it is written",
+                          filter->name));
         if (count <= 0)
             break;
         done += (size_t)count;

@@ -2,6 +2,7 @@
  * copies bytes from any place on: a browser's file, a range of a request. */
 #include "base/monitor.h"
 #include "io/filters/filter.h"
+#include "io/lookup.h"
 
 typedef struct with_filter {
     snow_filter_stage filter; /* first: it is the record's address */
@@ -50,15 +51,17 @@ static bool jump(snow_filter_stage *filter, uint64_t count) {
     return true;
 }
 
-/* A read that fails returns what came before, as at the end: callers that need
- * the bytes reject both. */
+/* A read that fails returns what came before, as at the end; the failure is
+ * kept (io/lookup.h). */
 static size_t look(snow_filter_stage *filter, uint64_t from, void *bytes,
                    size_t size) {
     with_filter *with = (with_filter *)filter;
     size_t done = 0;
     if (from < with->bytes.size)
-        (void)copy(with, from, bytes, lesser(size, with->bytes.size - from),
-                   &done);
+        (void)snow_lookup_keep(filter->context,
+                               copy(with, from, bytes,
+                                    lesser(size, with->bytes.size - from),
+                                    &done));
     return done;
 }
 
