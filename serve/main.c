@@ -19,6 +19,7 @@
 #include "options/config.h"
 #include "run/log.h"
 
+#include <errno.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -130,8 +131,14 @@ static json_t *first_recipe(const options *opts) {
     return tree;
 }
 
-static int fail_start(void) {
-    return fail_memory("out of memory at the start; close other programs");
+/* By an error number; others than these come from what did work. */
+static int fail_start(int number) {
+    if (number != EAGAIN && number != EMFILE && number != ENFILE)
+        return fail_memory("out of memory at the start; close other programs");
+    say("serve: cannot be started: %s; end other programs, or allow more "
+        "threads and files (ulimit -u, -n)",
+        strerror(number));
+    return SNOW_STATUS_FAILED;
 }
 
 /* Of the first rank: what serves, and its state, before the volume, which may
@@ -145,11 +152,12 @@ static int open_door(viewer *v, const json_t *recipe) {
         done = sockets_open(opts, &v->guard, &v->sockets);
     if (done != CONTINUE)
         return done;
+    errno = 0;
     json_t *copy = json_deep_copy(recipe);
     v->state = copy ? state_new(copy) : NULL;
     v->listener = listener_new(&v->sockets, &v->guard, IDLE_SECONDS);
     v->box = v->listener ? outbox_new(listener_wake, v->listener) : NULL;
-    return v->state && v->box ? CONTINUE : fail_start();
+    return v->state && v->box ? CONTINUE : fail_start(errno);
 }
 
 static int open_live(viewer *v) {
@@ -202,7 +210,8 @@ static void *listen_to_pages(void *user) {
  * only one that may speak to other ranks. */
 static bool start_listening(viewer *v) {
     sigset_t all;
-    if (pthread_create(&v->thread, NULL, listen_to_pages, v) != 0)
+    errno = pthread_create(&v->thread, NULL, listen_to_pages, v);
+    if (errno != 0)
         return false;
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, NULL);
@@ -229,14 +238,16 @@ static int serve(viewer *v) {
     int done = print_url(v);
     if (done != SNOW_STATUS_OK)
         return done;
+    errno = 0;
     v->pack = packer_new(v->box);
     if (v->pack)
         v->renderer = renderer_new(&v->drawing, v->state, v->box, v->pack);
     say_to(show_line, v->box);
     if (v->renderer && start_listening(v))
         return draw_all(v);
+    int number = errno;
     say_to(NULL, NULL);
-    return fail_start();
+    return fail_start(number);
 }
 
 static int serve_live(viewer *v) {
@@ -246,8 +257,9 @@ static int serve_live(viewer *v) {
         return done;
     say_to(show_line, v->box);
     if (!start_listening(v)) {
+        int number = errno;
         say_to(NULL, NULL);
-        return fail_start();
+        return fail_start(number);
     }
     live_run(v->live, v->state, v->box);
     pthread_join(v->thread, NULL);

@@ -3,6 +3,7 @@
 #include "pack.h"
 #include "message.h"
 
+#include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -275,11 +276,16 @@ packer *packer_new(outbox *box) {
     pthread_cond_init(&p->changed, NULL);
     /* From here on nothing may print to standard output. */
     file = memfd_create("snowglass", MFD_CLOEXEC);
-    if (file >= 0 && dup2(file, STDOUT_FILENO) == STDOUT_FILENO &&
-        snow_context_new(NULL, &p->context) == SNOW_STATUS_OK &&
-        pthread_create(&p->thread, NULL, run, p) == 0)
+    int number =
+        file >= 0 && dup2(file, STDOUT_FILENO) == STDOUT_FILENO ? 0 : errno;
+    if (!number && snow_context_new(NULL, &p->context) != SNOW_STATUS_OK)
+        number = ENOMEM;
+    if (!number)
+        number = pthread_create(&p->thread, NULL, run, p);
+    if (!number)
         return p;
     packer_free(p);
+    errno = number;
     return NULL;
 }
 

@@ -24,7 +24,7 @@ typedef struct picture {
 
 typedef struct packer packer;
 
-/* Starts the thread; NULL: no memory, or no thread. */
+/* Starts the thread; NULL: no memory, or no thread, as errno says. */
 packer *packer_new(outbox *box);
 
 /* Ends it, and returns all pictures for the renderer to free. */

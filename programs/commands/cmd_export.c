@@ -121,8 +121,13 @@ static int read_page(page_text *out) {
                           path);
     bool good = append_file(out, page);
     fclose(page);
-    return good ? CONTINUE
-                : fail_memory("%s: cannot be read, or out of memory", path);
+    return good        ? CONTINUE
+           : out->lost ? fail_memory("%s: out of memory for the page; close "
+                                     "other programs",
+                                     path)
+                       : fail_usage("%s: cannot be read to its end; check the "
+                                    "disk",
+                                    path);
 }
 
 /* --- the volume ----------------------------------------------------------- */
@@ -167,9 +172,9 @@ static int open_volume(snow_context *context, const options *opts,
 static int append_packed(page_text *out, FILE *file, const char *path) {
     page_text plain = {0}, packed = {0};
     z_stream z = {.zalloc = NULL};
-    bool good =
-        append_file(&plain, file) &&
-        deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 9, Z_DEFAULT_STRATEGY) == Z_OK;
+    bool whole = append_file(&plain, file);
+    bool good = whole && deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 9,
+                                      Z_DEFAULT_STRATEGY) == Z_OK;
     if (good) {
         size_t most = deflateBound(&z, (uLong)plain.length);
         z.next_in = (Bytef *)plain.bytes;
@@ -181,7 +186,11 @@ static int append_packed(page_text *out, FILE *file, const char *path) {
         deflateEnd(&z);
     }
     free(plain.bytes);
-    int done = !good
+    int done = !whole && !plain.lost
+                   ? fail_output("%s: its voxels cannot be read again; check "
+                                 "the disk of TMPDIR",
+                                 path)
+               : !good
                    ? fail_memory("%s: out of memory for the page; take a part "
                                  "of it with --crop",
                                  path)

@@ -61,7 +61,7 @@ static int find_transfer(const options *opts, const char *name, named *out) {
     snow_color_point point;
     if (map >= 0 && snow_colormap_points((size_t)map, &point, 1) == 0)
         map = -1; /* a list of colours, which has no points of its own */
-    bool file = access(name, F_OK) == 0 || (preset < 0 && map < 0);
+    bool file = is_there(name) || (preset < 0 && map < 0);
     if (!file && preset >= 0 && !snow_preset_look((size_t)preset)->color_count)
         return fail_usage("%s: is made of a volume's values and has no points; "
                           "use it with --preset %s",

@@ -9,11 +9,13 @@
 #include "run/paths.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static int is_shown(const struct dirent *entry) {
     return entry->d_name[0] != '.';
@@ -55,13 +57,19 @@ static void free_entries(struct dirent **entries, int count) {
     free(entries);
 }
 
-/* False for a pipe or a device, which may keep who opens it waiting. */
+static bool is_lost(const char *path) {
+    struct stat what;
+    return stat(path, &what) != 0;
+}
+
+/* False for a pipe or a device, which may keep who opens it waiting.  What
+ * cannot be looked at is opened, which says why. */
 static bool path_in(const char *folder, const char *name, char out[PATH_MAX]) {
     size_t length = strlen(folder);
     bool slash = length && folder[length - 1] == '/';
     return snprintf(out, PATH_MAX, "%s%s%s", folder, slash ? "" : "/", name) <
                PATH_MAX &&
-           (is_file(out) || is_folder(out));
+           (is_file(out) || is_folder(out) || is_lost(out));
 }
 
 /* Whether files of the format may be the slices of one volume. */
@@ -189,11 +197,16 @@ static int list_file(const options *opts, const char *path, json_t *list) {
 
 /* The DICOM files of a folder are listed once, as the folder: a slice stands
  * for its whole series, so that each would cost the headers of all. */
-static void list_folder(const options *opts, const char *folder, json_t *list) {
+static int list_folder(const options *opts, const char *folder, json_t *list) {
     struct dirent **entries = NULL;
     char path[PATH_MAX];
     bool series = false;
     int count = entries_of(folder, &entries);
+    if (count < 0) {
+        say("%s: cannot be listed: %s; check the name and the permissions",
+            folder, strerror(errno));
+        return SNOW_STATUS_BAD_INPUT;
+    }
     for (int i = 0; i < count; i++) {
         if (!path_in(folder, entries[i]->d_name, path))
             continue;
@@ -203,6 +216,7 @@ static void list_folder(const options *opts, const char *folder, json_t *list) {
         series |= slice;
     }
     free_entries(entries, count);
+    return CONTINUE;
 }
 
 int info_list(const options *opts) {

@@ -117,7 +117,7 @@ static snow_status start_workers(frame_queue *queue, int wanted) {
            pthread_create(&queue->threads[queue->workers], NULL, work, queue) ==
                0)
         queue->workers++;
-    return queue->workers > 0 ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+    return queue->workers > 0 ? SNOW_STATUS_OK : SNOW_STATUS_FAILED;
 }
 
 snow_status frames_new(const frame_sink *sink, int workers, frame_queue **out) {

@@ -44,7 +44,8 @@ typedef struct frame_queue frame_queue;
 #define FRAME_WORKERS_MOST 8
 
 /* Starts 1 to FRAME_WORKERS_MOST workers, with two slots more than workers. The
- * sink is copied.  Errors: SNOW_STATUS_NO_MEMORY (or no thread). */
+ * sink is copied.  Errors: SNOW_STATUS_NO_MEMORY, SNOW_STATUS_FAILED (the
+ * system gives no thread). */
 snow_status frames_new(const frame_sink *sink, int workers, frame_queue **out);
 
 /* Copies a picture and its depths (NULL: none), or takes NULL for a frame whose

@@ -129,6 +129,21 @@ static double movie_rate(const options *opts, const shot_list *list) {
     return rate < 2 ? 2 : rate;
 }
 
+/* What a user can do about ffmpeg that cannot be started. */
+static const char *remedy(int number) {
+    switch (number) {
+    case EAGAIN:
+        return "end other programs, or allow more (ulimit -u)";
+    case ENOMEM:
+        return "close other programs";
+    case EMFILE:
+    case ENFILE:
+        return "close other files, or allow more of them (ulimit -n)";
+    default:
+        return "correct the PATH";
+    }
+}
+
 static int start_encoder(movie *s) {
     encoder_job job = {.format = s->place.format,
                        .width = (int)s->opts->size[0],
@@ -141,8 +156,8 @@ static int start_encoder(movie *s) {
     s->encoding = number == 0;
     return number == 0
                ? CONTINUE
-               : fail_output("%s: cannot start ffmpeg: %s; correct the PATH",
-                             s->place.output, strerror(number));
+               : fail_output("%s: cannot start ffmpeg: %s; %s", s->place.output,
+                             strerror(number), remedy(number));
 }
 
 /* Claims the output for this run. */
@@ -184,10 +199,17 @@ static int begin_parts(movie *s) {
             s->place.output, s->place.folder);
     if (done != CONTINUE)
         return done;
-    if (frames_new(&sink, count_workers(s->opts), &s->queue) == SNOW_STATUS_OK)
-        return CONTINUE;
-    return fail_memory("out of memory for the queue of frames; use a smaller "
-                       "--size");
+    snow_status status = frames_new(&sink, count_workers(s->opts), &s->queue);
+    if (status == SNOW_STATUS_NO_MEMORY)
+        return fail_memory("out of memory for the queue of frames; use a "
+                           "smaller --size");
+    if (status != SNOW_STATUS_OK) {
+        say("%s: the system gives no thread to write frames; end other "
+            "programs, or allow more (ulimit -u)",
+            s->place.output);
+        return (int)status;
+    }
+    return CONTINUE;
 }
 
 /* --- the loop ------------------------------------------------------------- */

@@ -82,15 +82,21 @@ static int find_numbers(const char *pattern, frame_names *names, numbers *out) {
         return SNOW_STATUS_BAD_INPUT;
     }
     bool good = true;
-    while (good && (entry = readdir(folder))) {
+    while (good && (errno = 0, entry = readdir(folder))) {
         names_widen(names, entry->d_name);
         int64_t value = names_index(names, entry->d_name);
         if (value >= 0)
             good = add_number(out, value, names->digits);
     }
+    const int reason = entry ? 0 : errno;
     closedir(folder);
     if (!good)
         return steps_fail_memory();
+    if (reason) {
+        say("%s: its folder cannot be listed to the end: %s; check the disk",
+            pattern, strerror(reason));
+        return SNOW_STATUS_BAD_INPUT;
+    }
     if (!out->count) {
         say("%s: no file matches this pattern; correct it", pattern);
         return SNOW_STATUS_BAD_INPUT;

@@ -6,6 +6,7 @@
  * that do not change a frame are omitted. */
 #define _XOPEN_SOURCE 700
 #include "movie/movie_record.h"
+#include "picture/outputs.h"
 #include "run/log.h"
 #include "run/paths.h"
 #include "run/start.h"
@@ -380,19 +381,6 @@ int record_open(const options *opts, shot_list *list, const movie_place *place,
     return out->head ? CONTINUE : fail_list(list);
 }
 
-static int write_all(int file, const char *text, size_t size) {
-    while (size) {
-        ssize_t taken = write(file, text, size);
-        if (taken < 0 && errno == EINTR)
-            continue;
-        if (taken <= 0)
-            return taken < 0 ? errno : EIO;
-        text += taken;
-        size -= (size_t)taken;
-    }
-    return 0;
-}
-
 int record_claim(frame_record *record, const movie_place *place) {
     if (record->file >= 0)
         return 0;
@@ -413,7 +401,7 @@ static int write_line(const frame_record *record, const shot_list *list,
                  "frame %" PRId64 " of %" PRId64 " bytes %" PRId64 " %s", index,
                  list->count, bytes, record->inputs[index]);
     return length > 0 && (size_t)length < sizeof line
-               ? write_all(record->file, line, (size_t)length)
+               ? write_bytes(record->file, line, (size_t)length)
                : ENAMETOOLONG;
 }
 
@@ -431,9 +419,7 @@ static int write_known(frame_record *record, const movie_place *place,
             number =
                 write_line(record, list, i, kept ? (int64_t)what.st_size : 0);
     }
-    if (number == 0 && fsync(record->file) != 0 && errno != EINVAL)
-        number = errno;
-    return number;
+    return number ? number : sync_bytes(record->file);
 }
 
 /* Old frames are removed before the record that lists them, so that an
@@ -449,7 +435,7 @@ int record_add(frame_record *record, const movie_place *place,
     if ((record->anew || whole) && ftruncate(record->file, whole) != 0)
         number = errno;
     if (number == 0 && record->anew)
-        number = write_all(record->file, record->head, strlen(record->head));
+        number = write_bytes(record->file, record->head, strlen(record->head));
     record->whole = 0;
     if (number == 0 && (record->anew || record->renewed))
         number = write_known(record, place, list);

@@ -10,11 +10,14 @@
  * Frames are whole pictures that replace each other, compressed when they were
  * rendered.  So writing the movie is a copy and takes little memory. */
 #include "movie/movie_webp.h"
+#include "picture/outputs.h"
 
 #include <errno.h>
-#include <stdio.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #define FILE_MOST 4294967294u /* bytes; sizes have 32 bits and are even */
 #define FRAME_BYTES 16        /* of the header in ANMF */
@@ -24,13 +27,9 @@ static void put_number(unsigned char *out, int bytes, uint64_t value) {
         out[i] = (unsigned char)(value >> 8 * i & 255);
 }
 
-static bool write_all(FILE *out, const void *bytes, size_t size) {
-    return fwrite(bytes, 1, size, out) == size;
-}
-
 /* Writes everything before the frames; the total size is filled in at the
  * end. */
-static bool write_header(FILE *out, const webp_job *job) {
+static int write_header(int out, const webp_job *job) {
     unsigned char bytes[12 + 18 + 14] = {0};
     memcpy(bytes, "RIFF\0\0\0\0WEBPVP8X", 16);
     put_number(bytes + 16, 4, 10);
@@ -39,28 +38,45 @@ static bool write_header(FILE *out, const webp_job *job) {
     put_number(bytes + 27, 3, (uint64_t)job->height - 1);
     memcpy(bytes + 30, "ANIM", 4);
     put_number(bytes + 34, 4, 6);
-    return write_all(out, bytes, sizeof bytes);
+    return write_bytes(out, bytes, sizeof bytes);
 }
 
-/* Reads a frame's file into memory; NULL with errno.  Free with free(). */
-static unsigned char *read_file(const char *path, size_t *size) {
-    FILE *file = fopen(path, "rb");
-    unsigned char *bytes = NULL;
-    if (!file)
-        return NULL;
-    long end = fseek(file, 0, SEEK_END) == 0 ? ftell(file) : -1;
-    rewind(file);
-    if (end >= 12 && (bytes = malloc((size_t)end)) &&
-        fread(bytes, 1, (size_t)end, file) != (size_t)end) {
-        free(bytes);
-        bytes = NULL;
-        errno = EIO;
+/* Reads all of an open file; returns 0 or an error number. */
+static int read_bytes(int file, unsigned char *bytes, size_t size) {
+    for (size_t done = 0; done < size;) {
+        ssize_t got = read(file, bytes + done, size - done);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0)
+            return got < 0 ? errno : EIO;
+        done += (size_t)got;
     }
-    if (end < 12)
-        errno = EIO;
-    *size = (size_t)end;
-    fclose(file);
-    return bytes;
+    return 0;
+}
+
+/* Reads a frame's file into memory; returns 0 or an error number.  Free with
+ * free(). */
+static int read_file(const char *path, unsigned char **out, size_t *size) {
+    struct stat about;
+    int number = 0, file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0)
+        return errno;
+    if (fstat(file, &about) != 0)
+        number = errno;
+    else if (about.st_size < 12)
+        number = EIO;
+    unsigned char *bytes = number ? NULL : malloc((size_t)about.st_size);
+    if (!number)
+        number =
+            bytes ? read_bytes(file, bytes, (size_t)about.st_size) : ENOMEM;
+    close(file);
+    if (number) {
+        free(bytes);
+        return number;
+    }
+    *out = bytes;
+    *size = (size_t)about.st_size;
+    return 0;
 }
 
 /* The offset of a picture's own chunks: after RIFF, and VP8X if there is
@@ -73,8 +89,8 @@ static size_t skip_header(const unsigned char *bytes, size_t size) {
     return at < size ? at : size;
 }
 
-static bool write_frame(FILE *out, const webp_job *job, int64_t index,
-                        const unsigned char *file, size_t size) {
+static int write_frame(int out, const webp_job *job, int64_t index,
+                       const unsigned char *file, size_t size) {
     unsigned char head[8 + FRAME_BYTES] = {0};
     size_t at = skip_header(file, size), rest = size - at;
     memcpy(head, "ANMF", 4);
@@ -90,51 +106,45 @@ static bool write_frame(FILE *out, const webp_job *job, int64_t index,
                : length > 0xFFFFFF ? 0xFFFFFF
                                    : (uint64_t)length);
     head[23] = 0x02; /* replaces the previous frame */
-    return write_all(out, head, sizeof head) && write_all(out, file + at, rest);
+    int number = write_bytes(out, head, sizeof head);
+    return number ? number : write_bytes(out, file + at, rest);
 }
 
 /* Chunk sizes are even, and so are the sizes of the files that they come
  * from. */
-static int write_frames(FILE *out, const webp_job *job,
-                        const movie_place *place, uint64_t *total) {
+static int write_frames(int out, const webp_job *job, const movie_place *place,
+                        uint64_t *total) {
     char path[PATH_MAX];
-    for (int64_t i = 0; i < job->count; i++) {
+    int number = 0;
+    for (int64_t i = 0; i < job->count && number == 0; i++) {
         size_t size = 0;
         unsigned char *file = NULL;
-        errno = ENAMETOOLONG;
-        if (place_frame(place, i, path, sizeof path))
-            file = read_file(path, &size);
-        if (!file)
-            return errno ? errno : EIO;
+        number = place_frame(place, i, path, sizeof path)
+                     ? read_file(path, &file, &size)
+                     : ENAMETOOLONG;
+        if (number)
+            return number;
         *total += 8 + FRAME_BYTES + size - skip_header(file, size);
-        bool good = *total <= FILE_MOST;
-        errno = EFBIG;
-        good = good && write_frame(out, job, i, file, size);
-        int number = errno;
+        number =
+            *total <= FILE_MOST ? write_frame(out, job, i, file, size) : EFBIG;
         free(file);
-        if (!good)
-            return number ? number : EIO;
     }
-    return 0;
+    return number;
 }
 
 int webp_join(const webp_job *job, const movie_place *place) {
     unsigned char size[4];
     uint64_t total = 12 + 18 + 14;
-    FILE *out = fopen(place->movie, "wb");
-    if (!out)
+    int out =
+        open(place->movie, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (out < 0)
         return errno;
-    errno = 0;
-    int number = write_header(out, job) ? 0 : errno ? errno : EIO;
+    int number = write_header(out, job);
     if (number == 0)
         number = write_frames(out, job, place, &total);
     put_number(size, 4, total - 8);
-    errno = 0;
-    if (number == 0 &&
-        (fseek(out, 4, SEEK_SET) != 0 || !write_all(out, size, sizeof size)))
-        number = errno ? errno : EIO;
-    errno = 0;
-    if (fclose(out) != 0 && number == 0)
-        number = errno ? errno : EIO;
-    return number;
+    if (number == 0)
+        number = write_bytes_at(out, size, sizeof size, 4);
+    int closing = close_bytes(out);
+    return number ? number : closing;
 }

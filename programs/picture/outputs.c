@@ -107,43 +107,63 @@ int check_stats_path(const char *path, bool overwrite) {
     return CONTINUE;
 }
 
+int write_bytes(int file, const void *bytes, size_t count) {
+    const char *at = bytes;
+    while (count) {
+        ssize_t taken = write(file, at, count);
+        if (taken < 0 && errno == EINTR)
+            continue;
+        if (taken <= 0)
+            return taken < 0 ? errno : EIO;
+        at += taken;
+        count -= (size_t)taken;
+    }
+    return 0;
+}
+
+int write_bytes_at(int file, const void *bytes, size_t count, int64_t at) {
+    return lseek(file, (off_t)at, SEEK_SET) < 0
+               ? errno
+               : write_bytes(file, bytes, count);
+}
+
+int sync_bytes(int file) {
+    while (fsync(file) != 0)
+        if (errno != EINTR)
+            return errno == EINVAL ? 0 : errno;
+    return 0;
+}
+
+/* It is closed even where a signal has come in between. */
+int close_bytes(int file) {
+    return close(file) == 0 || errno == EINTR ? 0 : errno;
+}
+
 /* A text and its end. */
 typedef struct text_bytes {
     const char *bytes;
     size_t count;
 } text_bytes;
 
-static int dump_text(text_bytes text, FILE *file) {
-    return fwrite(text.bytes, 1, text.count, file) == text.count &&
-                   fflush(file) == 0
-               ? 0
-               : -1;
-}
-
 /* Opens a new file beside `path`, on the same file system, and stores its name
  * in `aside`.  mkstemp's mode 0600 is for secrets, so the file gets the mode of
  * the file that it will replace, or that of a new file. */
-static FILE *open_aside(const char *path, char *aside, size_t size) {
+static int open_aside(const char *path, char *aside, size_t size) {
     size_t folder = folder_length(path);
     int length = snprintf(aside, size, "%.*s.%.*s.snow-XXXXXX", (int)folder,
                           path, NAME_PART, path + folder);
     if (length < 0 || (size_t)length >= size) {
         errno = ENAMETOOLONG;
-        return NULL;
+        return -1;
     }
     int handle = mkstemp(aside);
     if (handle < 0)
-        return NULL;
+        return -1;
     struct stat old;
     mode_t mask = umask(0); /* the only way to read it */
     umask(mask);
     fchmod(handle, stat(path, &old) == 0 ? old.st_mode & 0777 : 0666 & ~mask);
-    FILE *file = fdopen(handle, "w");
-    if (!file) {
-        close(handle);
-        unlink(aside);
-    }
-    return file;
+    return handle;
 }
 
 /* link fails if a file has appeared since the check; rename would destroy
@@ -172,7 +192,7 @@ int place_output(const char *aside, const char *path, bool overwrite) {
     int file = open(aside, O_RDWR | O_CLOEXEC);
     if (file < 0)
         return errno;
-    int number = fsync(file) != 0 && errno != EINVAL ? errno : 0;
+    int number = sync_bytes(file);
     close(file);
     if (number == 0)
         number = name_output(aside, path, overwrite);
@@ -185,53 +205,52 @@ int place_output(const char *aside, const char *path, bool overwrite) {
 static int write_aside(text_bytes text, const char *given, bool overwrite) {
     char resolved[PATH_MAX], aside[PATH_MAX];
     const char *path = realpath(given, resolved) ? resolved : given;
-    FILE *file = open_aside(path, aside, sizeof aside);
-    if (!file)
-        return -1;
-    int number = dump_text(text, file) == 0 ? 0 : errno;
-    if (number == 0 && fsync(fileno(file)) != 0 && errno != EINVAL)
-        number = errno;
-    if (fclose(file) != 0 && number == 0)
-        number = errno;
+    int file = open_aside(path, aside, sizeof aside);
+    if (file < 0)
+        return errno;
+    int number = write_bytes(file, text.bytes, text.count);
+    if (number == 0)
+        number = sync_bytes(file);
+    int closing = close_bytes(file);
+    if (number == 0)
+        number = closing;
     if (number == 0)
         number = name_output(aside, path, overwrite);
     if (number == 0)
         sync_folder(path);
     else
         unlink(aside);
-    errno = number;
-    return number == 0 ? 0 : -1;
+    return number;
 }
 
 /* For pipes and devices, which a rename would replace by a regular file. */
 static int write_through(text_bytes text, const char *path) {
-    FILE *file = fopen(path, "w");
-    if (!file)
-        return -1;
-    int done = dump_text(text, file);
-    int reason = errno;
-    if (fclose(file) != 0)
-        return -1;
-    errno = reason;
-    return done;
+    int file = -1;
+    do
+        file = open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    while (file < 0 && errno == EINTR);
+    if (file < 0)
+        return errno;
+    int number = write_bytes(file, text.bytes, text.count);
+    int closing = close_bytes(file);
+    return number ? number : closing;
 }
 
 int write_text(const char *bytes, size_t count, const char *path,
                bool overwrite) {
     const text_bytes text = {bytes, count};
-    errno = 0;
     if (strcmp(path, "-") == 0)
-        return dump_text(text, stdout) == 0
+        return fwrite(bytes, 1, count, stdout) == count
                    ? finish_stdout()
                    : fail_output("standard output: cannot be written");
-    int done = is_special(path) ? write_through(text, path)
-                                : write_aside(text, path, overwrite);
-    if (done == 0)
-        return SNOW_STATUS_OK;
-    if (errno == EEXIST)
+    int number = is_special(path) ? write_through(text, path)
+                                  : write_aside(text, path, overwrite);
+    if (number == EEXIST)
         return fail_existing(path);
-    return fail_output("%s: %s; choose a place that can be written", path,
-                       errno ? strerror(errno) : "cannot be written");
+    return number == 0
+               ? SNOW_STATUS_OK
+               : fail_output("%s: %s; choose a place that can be written", path,
+                             strerror(number));
 }
 
 int write_json(json_t *object, const char *path, bool overwrite) {

@@ -36,6 +36,16 @@ int write_json(json_t *object, const char *path, bool overwrite);
 int write_text(const char *bytes, size_t count, const char *path,
                bool overwrite);
 
+/* Writes bytes to an open file, or in the place of those at `at`, or makes what
+ * was written survive a power failure where that is possible.  A signal does no
+ * harm.  Returns 0 or an error number. */
+int write_bytes(int file, const void *bytes, size_t count);
+int write_bytes_at(int file, const void *bytes, size_t count, int64_t at);
+int sync_bytes(int file);
+
+/* Closes a file, of which some systems say only now that it is not whole. */
+int close_bytes(int file);
+
 /* The offset of the last part of a path. */
 size_t folder_length(const char *path);
 

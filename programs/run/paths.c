@@ -2,6 +2,7 @@
 #define _XOPEN_SOURCE 700
 #include "run/paths.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -23,7 +24,7 @@ bool ends_with(const char *text, const char *end) {
 
 bool is_there(const char *path) {
     struct stat what;
-    return stat(path, &what) == 0;
+    return lstat(path, &what) == 0 || (errno != ENOENT && errno != ENOTDIR);
 }
 
 void file_of_input(const char *path, char *out, size_t size) {

@@ -10,7 +10,8 @@
 bool is_folder(const char *path);
 bool is_file(const char *path);
 
-/* Whether a path names anything that exists. */
+/* Whether a path names anything that exists, also a link that leads nowhere and
+ * what cannot be looked at: to open it says why. */
 bool is_there(const char *path);
 
 /* The file of an input that may name a data set in it: run.h5 for run.h5:/rho,

@@ -29,6 +29,10 @@ static bool find_beside(const char *name, char path[PATH_MAX]) {
 /* What stops an exec may be the file itself, or that there is none. */
 static int refuse(const char *name) {
     int reason = errno;
+    if (reason == EAGAIN || reason == ENOMEM)
+        return fail_usage("%s: cannot be started (%s); end other programs, or "
+                          "allow more (ulimit -u)",
+                          name, strerror(reason));
     return fail_usage("%s: cannot be started (%s); install it beside snowglass "
                       "or in a folder of PATH",
                       name, strerror(reason));

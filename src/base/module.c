@@ -26,6 +26,7 @@
 #if SNOW_LOADS
 
 #include <dlfcn.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -111,11 +112,16 @@ static void name_module(const char *name, module_file *file) {
 static snow_status find_module(snow_context *context, const char *name,
                                module_file *file) {
     name_module(name, file);
+    errno = 0;
     if (!find_self(file->self))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "needs %s, which is installed beside Snowglass, but "
-                         "that folder cannot be determined; mount /proc",
-                         file->name);
+                         "that folder cannot be determined; %s",
+                         file->name,
+                         errno == EMFILE || errno == ENFILE
+                             ? "close other files, or allow more of them "
+                               "(ulimit -n)"
+                             : "mount /proc");
     if (!find_in_folders(file))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "needs %s, which is not in %s; reinstall Snowglass "

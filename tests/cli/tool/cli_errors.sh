@@ -221,4 +221,38 @@ if "$TOOL" info jpeg.dcm 2>"$ERR" >"$OUT"; then
 else
     skipped "messages of libraries" "there is no GDCM"
 fi
+
+# --- what the system lacks ----------------------------------------------------
+
+faulty=$(dirname "$TOOL")/tests/libfaulty_calls.so
+if [ -e "$faulty" ]; then
+    mkdir bin calm
+    printf '#!/bin/sh\n' >bin/ffmpeg
+    chmod +x bin/ffmpeg
+    run 0 "a volume" "$TOOL" phantom shells --dims 8x8x8 -o p.nrrd
+    fault() {
+        local fault=$1 out=$2
+        shift 2
+        PATH=$PWD/bin:$PATH SNOW_FAULT=$fault LD_PRELOAD=$faulty "$TOOL" \
+            turntable p.nrrd -o "$out" --frames 3 -s 16x16 -q "$@"
+    }
+    run 0 "a movie" fault none calm/m.webp --save-config calm/c.json
+    run 0 "a movie into whose writes signals come" fault interrupt m.webp \
+        --save-config c.json --stats s.json
+    check "it is the same" cmp m.webp calm/m.webp
+    check "so is its recipe" cmp <(sed 's|"../p|"p|' calm/c.json) c.json
+    check "its figures are whole" grep -q '"kept": 0}}$' s.json
+    refused 1 "no thread" 'no thread .* \(ulimit -u\)' fault threads t.webp
+    refused 4 "no process" 'ffmpeg: .*allow more \(ulimit -u\)' \
+        fault spawn t.mp4
+    cp "$HERE/../fuzz/corpus/hdf5/plain" p.h5
+    if ls "$(dirname "$TOOL")"/snowglass-*/libsnowglass-hdf5.so >/dev/null 2>&1
+    then
+        refused 3 "no more files" 'needs .*; close other files' \
+            env SNOW_FAULT=files LD_PRELOAD="$faulty" "$TOOL" info p.h5
+    fi
+else
+    skipped "faults of the system" "their library is not built"
+fi
+
 finish
