@@ -174,6 +174,8 @@ snow_status snow_image_save(const snow_image *image, const char *path,
                             const snow_image_options *given) {
     snow_image_options options;
     const snow_image_format *format = NULL;
+    if (!image) /* none was made: there is no context for a message either */
+        return SNOW_STATUS_BAD_USAGE;
     SNOW_TRY(
         SNOW_RECORD_READ(image->context, snow_image_options, given, &options));
     SNOW_TRY(choose_format(image->context, path, &format));

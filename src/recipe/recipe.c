@@ -138,8 +138,16 @@ snow_status recipe_read_file(snow_context *context, const char *path,
     size_t capacity = (size_t)about.st_size + 1;
     *text = snow_context_allocate(context, capacity);
     *bytes = *text ? fread(*text, 1, capacity, file) : 0;
+    const bool broken = ferror(file) != 0;
     fclose(file);
-    return *text ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+    if (!*text || !broken)
+        return *text ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+    snow_context_release(context, *text);
+    *text = NULL;
+    *bytes = 0;
+    return snow_context_fail(context, SNOW_STATUS_BAD_INPUT,
+                             "%s: cannot be read to its end; check the disk",
+                             path);
 }
 
 snow_status snow_recipe_load(snow_context *context, const char *path,

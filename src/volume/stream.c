@@ -142,7 +142,7 @@ snow_status snow_stream_open_part(const snow_volume *volume,
 }
 
 double snow_volume_read_seconds(const snow_volume *volume) {
-    return volume->stream ? volume->stream->seconds : 0;
+    return volume && volume->stream ? volume->stream->seconds : 0;
 }
 
 /* --- slabs ---------------------------------------------------------------- */

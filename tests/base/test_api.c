@@ -69,6 +69,10 @@ static void a_file_that_is_missing_makes_no_image(void **state) {
         SNOW_STATUS_BAD_INPUT);
     assert_null(image);
     assert_non_null(strstr(snow_context_message(context), "missing.nrrd"));
+    /* who goes on all the same is told so */
+    assert_int_equal(snow_image_save(image, "no.png", NULL),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_true(snow_volume_read_seconds(NULL) == 0);
     snow_context_free(context);
 }
 

@@ -13,6 +13,9 @@
 #define APART_MOST 1.5
 #define DRAFT_APART_MOST (SNOW_VALUE_REACH_MOST / 2)
 #define WIDE 4
+/* Doublings of the cells of the wider axis of voxels: more than a cell has
+ * phases, and few enough for an int. */
+#define DOUBLINGS_MOST 16
 /* Resampled slices a slice at most: powers of 2 have exact weights. */
 #define PER_SLICE_MOST 16
 
@@ -45,7 +48,7 @@ static void choose_cells(const snow_volume_info *info, const snow_placement *p,
     double u = info->spacing[p->u_axis], v = info->spacing[p->v_axis];
     int fine = u <= v ? 0 : 1;
     double ratio = fine ? u / v : v / u;
-    int doublings = (int)rint(log2(ratio));
+    int doublings = (int)fmin(rint(log2(ratio)), DOUBLINGS_MOST);
     l->cells[fine] = each;
     for (; doublings > 0 &&
            each * (each << doublings) * (1 + l->quincunx) > SNOW_VALUE_PHASES;

@@ -2,6 +2,7 @@
  * format, calls its reader, and makes the points. */
 #include "transfer/formats/tf.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -175,7 +176,9 @@ snow_status snow_look_load(snow_context *context, const char *path,
     struct stat about;
     const char *hash = strrchr(path, '#');
     size_t length = hash ? (size_t)(hash - path) : 0;
-    if (!hash || !hash[1] || length >= sizeof name || stat(path, &about) == 0)
+    /* What cannot be looked at is a file, whose opening says why. */
+    if (!hash || !hash[1] || length >= sizeof name ||
+        lstat(path, &about) == 0 || (errno != ENOENT && errno != ENOTDIR))
         return load(context, path, NULL, out);
     memcpy(name, path, length);
     name[length] = 0;

@@ -38,6 +38,9 @@ given empty.raw info -|^snowglass: standard input: [^:]*empty
 "$TOOL" -q missing.nrrd -o z.png|^snowglass: missing.nrrd: 
 END
 run 0 "a header and its data" "$TOOL" info eight.nhdr
+# shellcheck disable=SC2086
+run 0 "voxels 2^31 times as wide as high" "$TOOL" eight.raw --dims 8x8x8 \
+    --type uint8 --view +z --spacing 1x2147483648x1 --quality high -o flat.png
 odd=$(printf 'odd\nname\033[2J.nrrd')
 echo >"$odd"
 run 3 "a name with line ends and escapes" "$TOOL" info "$odd"
