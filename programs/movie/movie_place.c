@@ -151,13 +151,16 @@ int64_t place_first(const movie_place *place, int64_t from) {
     int64_t first = -1;
     const struct dirent *entry;
     DIR *folder = opendir(names_folder(&place->names));
-    while (folder && (entry = readdir(folder))) {
+    if (!folder)
+        return errno == ENOENT || errno == ENOTDIR ? -1 : from;
+    while ((errno = 0, entry = readdir(folder))) {
         int64_t index = names_index(&place->names, entry->d_name);
         if (index >= from && (first < 0 || index < first))
             first = index;
     }
-    if (folder)
-        closedir(folder);
+    if (errno)
+        first = from;
+    closedir(folder);
     return first;
 }
 

@@ -32,7 +32,8 @@ bool place_frame(const movie_place *place, int64_t index, char *out,
 bool place_aside(const movie_place *place, int64_t index, char *out,
                  size_t size);
 
-/* The lowest number, at least `from`, of a frame that exists; -1: none. */
+/* The lowest number, at least `from`, of a frame that exists; -1: none.  Where
+ * the folder cannot be listed, `from`: there may be frames. */
 int64_t place_first(const movie_place *place, int64_t from);
 
 /* Removes frames numbered below `count`. */

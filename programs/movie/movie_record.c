@@ -114,17 +114,25 @@ static char *text_of(const options *opts, const shot_list *list,
     return text;
 }
 
-/* The whole file as text; NULL if it cannot be read. */
+/* The whole file as text; NULL, with errno, if it cannot be read. */
 static char *read_text_of(int file) {
     struct stat what;
-    if (fstat(file, &what) != 0 || what.st_size > RECORD_MOST)
+    if (fstat(file, &what) != 0)
         return NULL;
+    if (what.st_size > RECORD_MOST) {
+        errno = EFBIG;
+        return NULL;
+    }
     size_t size = (size_t)what.st_size, got = 0;
     char *text = malloc(size + 1);
     while (text && got < size) {
         ssize_t some = pread(file, text + got, size - got, (off_t)got);
-        if (some <= 0 && !(some < 0 && errno == EINTR))
+        if (some == 0)
             break;
+        if (some < 0 && errno != EINTR) {
+            free(text);
+            return NULL;
+        }
         got += some > 0 ? (size_t)some : 0;
     }
     if (text)
@@ -277,6 +285,11 @@ static int check_other_files(const options *opts, const movie_place *place,
     if (first < 0 || opts->overwrite ||
         !place_frame(place, first, path, sizeof path))
         return CONTINUE;
+    struct stat what;
+    if (lstat(path, &what) != 0)
+        return fail_output("%s: may exist, as its folder cannot be listed; "
+                           "check the permissions and the disk",
+                           path);
     if (opts->resume)
         return fail_output(
             "%s: exists without a record of how it was made; use --overwrite "
@@ -355,6 +368,11 @@ int record_open(const options *opts, shot_list *list, const movie_place *place,
     if (done != CONTINUE)
         return done;
     char *old = out->file >= 0 ? read_text_of(out->file) : NULL;
+    if (!old && out->file >= 0)
+        return errno == ENOMEM
+                   ? fail_list(list)
+                   : fail_output("%s: cannot be read: %s; check the disk",
+                                 place->record, strerror(errno));
     const int64_t all = list->looked;
     /* The look of frames that are there stays when others are added. */
     const char *line = old && opts->resume ? strstr(old, "\n" LOOK_LINE) : NULL;

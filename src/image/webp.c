@@ -66,11 +66,8 @@ static snow_status encode(snow_levels *levels, webp_job *job,
     picture->writer = write_bytes;
     picture->progress_hook = report;
     picture->custom_ptr = job;
-    if (good && !WebPPictureAlloc(picture))
-        return snow_fail(context, SNOW_STATUS_NO_MEMORY,
-                         "out of memory to compress %d x %d pixels as WebP; "
-                         "use a smaller picture",
-                         picture->width, picture->height);
+    bool memory = good && !WebPPictureAlloc(picture);
+    good = good && !memory;
     for (int y = 0; y < picture->height && good; y++) {
         fill_line(levels, snow_levels_row(levels, y),
                   picture->argb + (size_t)y * (size_t)picture->argb_stride);
@@ -80,10 +77,14 @@ static snow_status encode(snow_levels *levels, webp_job *job,
         return SNOW_STATUS_OK;
     if (job->status != SNOW_STATUS_OK)
         return job->status;
-    bool memory = picture->error_code == VP8_ENC_ERROR_OUT_OF_MEMORY ||
-                  picture->error_code == VP8_ENC_ERROR_BITSTREAM_OUT_OF_MEMORY;
-    return snow_fail(context,
-                     memory ? SNOW_STATUS_NO_MEMORY : SNOW_STATUS_FAILED,
+    memory |= picture->error_code == VP8_ENC_ERROR_OUT_OF_MEMORY ||
+              picture->error_code == VP8_ENC_ERROR_BITSTREAM_OUT_OF_MEMORY;
+    if (memory)
+        return snow_fail(context, SNOW_STATUS_NO_MEMORY,
+                         "out of memory to compress %d x %d pixels as WebP; "
+                         "use a smaller picture",
+                         picture->width, picture->height);
+    return snow_fail(context, SNOW_STATUS_FAILED,
                      "the WebP file cannot be written (libwebp: error %d); "
                      "write a .png instead",
                      (int)picture->error_code);

@@ -245,6 +245,10 @@ if [ -e "$faulty" ]; then
     check "it is the same" cmp m.webp calm/m.webp
     check "so is its recipe" cmp <(sed 's|"../p|"p|' calm/c.json) c.json
     check "its figures are whole" grep -q '"kept": 0}}$' s.json
+    refused 4 "a movie that cannot be joined" 'with --resume' \
+        fault join calm/r.webp
+    run 0 "it is resumed" fault none calm/r.webp --resume
+    check "it is the same" cmp calm/r.webp calm/m.webp
     refused 1 "no thread" 'no thread .* \(ulimit -u\)' fault threads t.webp
     refused 4 "no process" 'ffmpeg: .*allow more \(ulimit -u\)' \
         fault spawn t.mp4

@@ -2,9 +2,12 @@
  * (LD_PRELOAD), makes calls of the system fail, as SNOW_FAULT says:
  *
  *   interrupt   a signal comes into each second write, sync and close
- *   threads     there are no threads; processes for `spawn`; files for `files`
+ *   join        the head of a movie cannot be written, and then no folder
+ * listed threads     there are no threads; processes for `spawn`; files for
+ * `files`
  */
 #define _GNU_SOURCE /* RTLD_NEXT, syscall */
+#include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <pthread.h>
@@ -31,7 +34,21 @@ static bool is_interrupted(void) {
     return true;
 }
 
+static bool is_broken; /* by the fault `join` */
+
+SEEN DIR *opendir(const char *path) {
+    DIR *(*real)(const char *) = NULL;
+    *(void **)&real = dlsym(RTLD_NEXT, "opendir");
+    errno = EIO;
+    return is_broken ? NULL : real(path);
+}
+
 SEEN ssize_t write(int file, const void *bytes, size_t size) {
+    if (is_fault("join") && size == 44 && memcmp(bytes, "RIFF", 4) == 0) {
+        is_broken = true;
+        errno = EIO;
+        return -1;
+    }
     return is_interrupted() ? -1 : syscall(SYS_write, file, bytes, size);
 }
 
