@@ -112,6 +112,12 @@ snow_status snow_volume_replace_spacing(snow_context *context,
                                         const snow_volume_options *options,
                                         snow_volume_info *info);
 
+/* Ends what snow_lookup_begin began (io/lookup.h): gives the volume, or closes
+ * it where something could not be looked up or read, even if the reader has
+ * gone on without it.  `volume` and `out` may be NULL. */
+snow_status snow_volume_finish(snow_context *context, snow_status status,
+                               snow_volume *volume, snow_volume **out);
+
 /* Crops a volume that was read as a whole. */
 snow_status snow_volume_crop(const snow_volume_options *options,
                              snow_volume **volume);

@@ -364,18 +364,6 @@ static snow_status open_path(snow_context *context, const char *path,
                                 out);
 }
 
-/* What could not be looked up or read is a failure, even if the reader has gone
- * on without it.  `volume` is NULL if there is none. */
-static snow_status finish_open(snow_context *context, snow_status status,
-                               snow_volume *volume, snow_volume **out) {
-    status = snow_lookup_end(context, status);
-    if (status == SNOW_STATUS_OK && out)
-        *out = volume;
-    else
-        snow_volume_close(volume);
-    return status;
-}
-
 static snow_status open_any(snow_context *context, const char *path,
                             const snow_volume_options *given,
                             snow_volume_info *info, snow_volume **out) {
@@ -389,7 +377,7 @@ static snow_status open_any(snow_context *context, const char *path,
             : open_path(context, path, &options, info, wanted);
     if (status == SNOW_STATUS_OK && volume && options.label_table)
         status = snow_label_table_read(context, options.label_table, volume);
-    return finish_open(context, status, volume, out);
+    return snow_volume_finish(context, status, volume, out);
 }
 
 /* A slab of a picture is read under the picture's monitor. */
@@ -436,8 +424,8 @@ static snow_status open_bytes(input *in, const snow_volume_options *given,
     snow_lookup_begin(in->context);
     snow_status status = snow_components_read(in->context, read_input, in,
                                               false, &options, &info, &volume);
-    return snow_monitor_end(&monitor,
-                            finish_open(in->context, status, volume, out));
+    return snow_monitor_end(
+        &monitor, snow_volume_finish(in->context, status, volume, out));
 }
 
 snow_status snow_volume_open_memory(snow_context *context, const char *name,

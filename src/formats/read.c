@@ -1,6 +1,7 @@
 /* formats/read.c - what readers share: voxels that lie in a file as they do in
  * memory, the choice of a time step, another spacing, a box. */
 #include "formats/format.h"
+#include "io/lookup.h"
 
 /* The bytes are compared with the source before the voxels get their memory: a
  * header of 400 bytes must not cost gigabytes. */
@@ -102,6 +103,16 @@ snow_status snow_volume_crop(const snow_volume_options *options,
     snow_volume_close(*volume);
     *volume = box;
     return SNOW_STATUS_OK;
+}
+
+snow_status snow_volume_finish(snow_context *context, snow_status status,
+                               snow_volume *volume, snow_volume **out) {
+    status = snow_lookup_end(context, status);
+    if (status == SNOW_STATUS_OK && out)
+        *out = volume;
+    else
+        snow_volume_close(volume);
+    return status;
 }
 
 bool snow_format_has_name(const snow_format *format, const char *name) {
