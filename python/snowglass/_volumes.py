@@ -911,13 +911,23 @@ def _files_of(pattern: str) -> list[tuple[int, str]]:
 
 def _files_like(pattern: str) -> list[tuple[int, str]]:
     """Those of a pattern with *, ? or [...], by the numbers in their names."""
+    import fnmatch
     import glob
 
     def order(path: str) -> list[Any]:
         parts = re.split(r"(\d+)", path)  # each second one is digits
         return [(int(part), part) if n % 2 else part
                 for n, part in enumerate(parts)]
-    found = sorted(glob.glob(pattern), key=order)
+    folder, name = os.path.split(pattern)
+    if glob.has_magic(folder):
+        paths = glob.glob(pattern)
+    else:  # glob passes over a folder that cannot be listed to its end
+        paths = [os.path.join(folder, each)
+                 for each in (os.listdir(folder or ".")
+                              if os.path.isdir(folder or ".") else ())
+                 if fnmatch.fnmatch(each, name) and
+                 (each[0] != "." or name[0] == ".")]
+    found = sorted(paths, key=order)
     if not found:
         raise FileNotFoundError(f"{pattern}: there is no such file")
     return list(enumerate(found))

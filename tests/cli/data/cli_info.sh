@@ -184,9 +184,11 @@ check "is listed by name" [ "$(cut -d: -f1 "$OUT" | tr '\n' ' ')" = \
     "many/a.nii.gz many/b.nrrd " ]
 says '^snowglass: many/read.me: has an unknown format'
 mkfifo many/pipe many/pipe.nrrd
+ln -s nowhere many/gone.nrrd
 run 0 "pipes in a folder are not waited for" timeout 60 "$TOOL" info many
 check "nor listed" [ "$(cut -d: -f1 "$OUT" | tr '\n' ' ')" = \
     "many/a.nii.gz many/b.nrrd " ]
+says 'many/gone.nrrd: cannot be opened: it is a link to a file that is not'
 cat >pipe.xmf <<END
 <Xdmf><Domain><Grid><Topology TopologyType="3DCoRectMesh" Dimensions="8 8 8"/>
 <Geometry GeometryType="ORIGIN_DXDYDZ"><DataItem Dimensions="3">0 0 0</DataItem>
