@@ -52,28 +52,26 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     serve_browser cli_interrupt cli_large cli_measurements oracle_zarr oracle_tiff
     oracle_vtk oracle_pictures oracle_damage)
 
-# Tenths of a second on one core in the short tier, of those that take more than
-# one second (scripts/test_costs); before them what takes longest in the long
-# tier, and what waits.  ctest begins with the longest, so that no core is idle
-# at the end.
+# Seconds that a test of the long tier took on a quiet machine of two cores, of
+# those that take more than eight.  ctest begins with the longest, so that no core
+# is idle at the end.
 set(SNOW_COSTS
-    isa_wasm 320 isa_neon 310 mpi_stall 300 mpi_insitu 280
-    mpi_render 260 wasm_page 300
-    package_within 200 package_wheel 200
-    mpi_serve 300 serve_browser 245 mpi_fail 240 mpi_comm 230 cli_progress 200 cli_large 190
-    cli_stream 87 test_ranks 62 test_stream 57
-    cli_figures 25 oracle_zarr 46 test_modes 44
-    cli_turntable 41 oracle_vtk 40 cli_render 39 test_stop 37
-    test_combine 35 cli_bench 34 cli_interrupt 34
-    cli_documents 31 test_raycast 31 cli_matrix 31
-    oracle_damage 40 oracle_dicom 31 test_pipeline 28 cli_measurements 28
-    test_ranks_open 28 test_shear_warp 27 test_insitu 26
-    test_model_picture 22 test_histogram 22 oracle_tiff 22
-    cli_real 22 test_model_encodings 20 test_truth 25 test_same_bits 25
-    serve_sockets 20 serve_hostile 20 oracle_orientation 20 oracle_hdf5 20 oracle_netcdf 18 test_comm 17
-    cli_formats 16 cli_config 16 test_gradient_opacity 16
-    test_api 13 cli_usage 12
-    test_splat_threads 11 test_phantom 11 oracle_pictures 11)
+    serve_browser 283 wasm_engine 167 python 163 wasm_page 151 cli_large 119
+    mpi_stall 118 cli_documents 110 mpi_serve 100 cli_stream 98 isa_neon 90
+    serve_sockets 68 mpi_render 57 test_stream 54 mpi_fail 54
+    oracle_orientation 46 package_wheel 40 oracle_amr 40 cli_figures 37
+    test_ranks 35 oracle_zarr 31 test_ranks_open 31 package_cmake 30
+    oracle_vtk 29 cli_turntable 28 oracle_hdf5 26 test_same_bits 25
+    package_manual 24 package_within 22 cli_bench 22 oracle_netcdf 22
+    test_pipeline 21 mpi_insitu 21 test_histogram 20 cli_again 20 test_stop 18
+    cli_channels 18 cli_shear_warp 17 cli_interrupt 17 serve_fuzz 16
+    oracle_tiff 16 test_raycast 15 cli_render 15 mpi_comm 14 test_insitu 14
+    package_site 14 serve_hostile 13 oracle_dicom 13 oracle_slice 13
+    test_model_picture 13 cli_progress 12 oracle_seg 12 test_truth 12
+    test_combine 11 package_layout 10 cli_real 10 mpi_python 10 test_modes 10
+    package_pkgconfig 10 cli_matrix 10 test_channels 9 test_model_encodings 9
+    cli_memory 8 mpi_clusters 8 oracle_series 8 test_laws 8 test_faults 8
+    oracle_damage 25)
 
 file(GLOB_RECURSE sources *.c *.sh *.py)
 get_property(tests DIRECTORY PROPERTY TESTS)
@@ -115,7 +113,7 @@ foreach(n RANGE ${last})
   list(GET SNOW_COSTS ${next} cost)
   if(test IN_LIST tests)
     set_tests_properties(${test} PROPERTIES COST ${cost})
-  elseif(NOT test MATCHES "^(isa_neon|isa_wasm)$" AND
+  elseif(NOT test MATCHES "^(isa_neon|isa_wasm|python)$" AND
          NOT sources MATCHES "/${test}[.](c|sh|py)(;|$)")
     message(FATAL_ERROR "tests/tiers.cmake: there is no test '${test}'")
   endif()

@@ -544,8 +544,8 @@ static void ranks_without_memory_fail_together(void **state) {
 
 int main(int argc, char **argv) {
 #define HERE(test)                                             \
-    cmocka_unit_test_setup_teardown(test, support_files_begin, \
-                                    support_files_end)
+    cmocka_unit_test_setup_teardown(test, support_files_setup, \
+                                    support_files_teardown)
     const struct CMUnitTest tests[] = {
         HERE(any_number_of_ranks_makes_the_serial_picture),
         HERE(phantoms_are_seen_alike_by_many_ranks),

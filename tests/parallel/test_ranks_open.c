@@ -584,7 +584,7 @@ static void ranks_with_unequal_room_for_samples_agree(void **state) {
         snow_transfer *expected;
         snprintf(path, sizeof path, "%s",
                  put_ramp(place, 512, slices, true, PLAIN_BESIDE));
-        snow_volume *whole = support_files_open(place, path);
+        snow_volume *whole = support_opened(place, path, NULL);
         assert_int_equal(snow_transfer_new_for_volume(whole, NULL, &expected),
                          SNOW_STATUS_OK);
         order o;
@@ -612,7 +612,7 @@ static void packed_data_are_not_read_in_slabs(void **state) {
         order o;
         snprintf(path, sizeof path, "%s",
                  put_ramp(place, 1024, 17, false, kind));
-        snow_volume *whole = support_files_open(place, path);
+        snow_volume *whole = support_opened(place, path, NULL);
         begin_order(&o, whole);
         o.path = path;
         o.memory = limited ? UINT64_C(1) << 30 : 0;

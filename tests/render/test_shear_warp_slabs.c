@@ -190,8 +190,8 @@ static void slabs_of_two_files_make_the_same_bits(void **state) {
 }
 
 #define TEST(name)                                             \
-    cmocka_unit_test_setup_teardown(name, support_files_begin, \
-                                    support_files_end)
+    cmocka_unit_test_setup_teardown(name, support_files_setup, \
+                                    support_files_teardown)
 
 int main(void) {
     const struct CMUnitTest tests[] = {

@@ -725,7 +725,7 @@ static void all_else_that_looks_at_voxels_is_refused(void **state) {
     support_files *place = *state;
     const char *path = write_head(place, SNOW_TYPE_UINT8, "head.nrrd");
     snow_volume *stream = stream_of(place, path, NULL, 0), *made = NULL;
-    snow_volume *whole = support_files_open(place, path);
+    snow_volume *whole = support_opened(place, path, NULL);
     snow_volume_statistics measures = {.size = sizeof measures};
     snow_transfer *transfer;
     uint64_t counts[2];
@@ -832,8 +832,8 @@ static void streams_that_cannot_be_read_twice_are_refused(void **state) {
 }
 
 #define TEST(name)                                             \
-    cmocka_unit_test_setup_teardown(name, support_files_begin, \
-                                    support_files_end)
+    cmocka_unit_test_setup_teardown(name, support_files_setup, \
+                                    support_files_teardown)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
