@@ -215,11 +215,14 @@ static void measure_move(snow_context *context, scenario *p,
     free(b);
 }
 
-/* Each scene with each number of ranks, all cuts in turn. */
+/* Each scene with half of the numbers of ranks (of two volumes, which are dear,
+ * with two), all cuts in turn. */
 static void sweep(support_files *place, const kind *k) {
     sweep_summary summary = {0};
-    for (int at = 0; at < k->scenes * COUNTS; at++) {
-        const int n = at / COUNTS, ranks = rank_counts[at % COUNTS];
+    const int each = k->layered ? 2 : COUNTS / 2;
+    for (int at = 0; at < k->scenes * each; at++) {
+        const int n = at / each, first = n / 3 % 2 * (COUNTS / 2);
+        const int ranks = rank_counts[first + at % each * (COUNTS / 2 / each)];
         if (!support_takes((size_t)(at + 5 * (int)(k - kinds)), 19))
             continue;
         reference_scene base = scene_of(k, n), front = {.voxels = NULL};
