@@ -1,4 +1,4 @@
-/* base/memory.c - all allocation.
+/* base/memory.c - all allocation, and sizes that do not overflow.
  *
  * Every block is preceded by a header of one alignment unit, so that its size
  * is known: whoever lets it grow asks for it, and the context counts its
@@ -162,4 +162,32 @@ snow_status snow_clear(snow_context *context, void *block, size_t bytes) {
         bytes -= piece;
     }
     return snow_monitor_status(context->monitor);
+}
+
+/* --- checked sizes -------------------------------------------------------- */
+
+bool snow_mul_u64(uint64_t a, uint64_t b, uint64_t *out) {
+    if (b && a > UINT64_MAX / b)
+        return false;
+    *out = a * b;
+    return true;
+}
+
+bool snow_add_u64(uint64_t a, uint64_t b, uint64_t *out) {
+    if (a > UINT64_MAX - b)
+        return false;
+    *out = a + b;
+    return true;
+}
+
+int64_t snow_last_up_to(const int64_t *numbers, int64_t low, int64_t high,
+                        int64_t most) {
+    while (low < high) {
+        int64_t middle = high - (high - low) / 2;
+        if (numbers[middle] <= most)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low;
 }
