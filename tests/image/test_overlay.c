@@ -548,9 +548,8 @@ static void files_show_it_and_the_picture_stays(void **state) {
         assert_int_equal(snow_overlay_text(overlay, 70, 60, 0.5, 0.5, 40, "S"),
                          SNOW_STATUS_OK);
         for (int flat = 0; flat < 2; flat++) {
-            const snow_image_options options = {.size = sizeof options,
-                                                .overlay = overlay,
-                                                .flatten = flat};
+            const snow_image_options options = {
+                .size = sizeof options, .overlay = overlay, .flatten = flat};
             snow_image *read = support_round_trip(f, image, "a.png", &options);
             /* The middle of the letter is white and opaque. */
             const float *pixel = snow_image_pixels(read) + 4 * (60 * 140 + 70);
