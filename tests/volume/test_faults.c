@@ -89,6 +89,16 @@ static fault_kind next_fault(char kind) {
 /* As compilers call them, where offsets of 64 bits are asked for or usual. */
 OPEN(open)
 OPEN(open64)
+#ifdef __GLIBC__ /* in hardened builds */
+#define OPEN_CHECKED(name)                                                    \
+    CALL(int, name, (const char *path, int flags)) {                          \
+        const int opened = next_fault('n') ? -1 : __real_##name(path, flags); \
+        faults.held += opened >= 0;                                           \
+        return opened;                                                        \
+    }
+OPEN_CHECKED(__open_2)
+OPEN_CHECKED(__open64_2)
+#endif
 LOOK_UP(stat, (const char *path, struct stat *out), (path, out))
 LOOK_UP(stat64, (const char *path, struct stat *out), (path, out))
 LOOK_UP(lstat, (const char *path, struct stat *out), (path, out))

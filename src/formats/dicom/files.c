@@ -327,9 +327,20 @@ static snow_status list_siblings(snow_context *context, const char *path,
     return status;
 }
 
+/* Whether two names end alike: ".dcm" and ".DCM", or both in nothing that is no
+ * number. */
+static bool ends_alike(const char *a, const char *b) {
+    const char *x = strrchr(snow_path_name(a), '.');
+    const char *y = strrchr(snow_path_name(b), '.');
+    const bool plain_x = !x || (x[1] >= '0' && x[1] <= '9');
+    const bool plain_y = !y || (y[1] >= '0' && y[1] <= '9');
+    return plain_x || plain_y ? plain_x && plain_y : snow_has_suffix(b, x);
+}
+
 /* Adds the images of the same series in the folder, except the given file,
- * which is there already.  One that is damaged may be a slice; a warning
- * reports it. */
+ * which is there already.  One that is damaged may be a slice, and one that
+ * cannot be opened is no reason to refuse if it is named unlike a slice of this
+ * series; a warning reports them. */
 static snow_status add_siblings(collection *c, const char *path,
                                 snow_folder *files) {
     const char *series = c->images[0]->series;
@@ -339,10 +350,14 @@ static snow_status add_siblings(collection *c, const char *path,
         char *file = files->paths[i];
         if (strcmp(snow_path_name(file), snow_path_name(path)) == 0)
             continue;
+        const bool whole = !*c->context->lost;
         snow_status status = add_file(c, file, series);
         if (status == SNOW_STATUS_NO_MEMORY)
             return status;
-        if (status != SNOW_STATUS_OK && !unread++)
+        const bool lost = whole && *c->context->lost && !ends_alike(path, file);
+        if (lost)
+            snow_lookup_begin(c->context);
+        if ((lost || status != SNOW_STATUS_OK) && !unread++)
             first = snow_path_name(file);
     }
     if (unread)
