@@ -28,7 +28,7 @@ set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
     package_within wasm_engine wasm_page)
 set(SNOW_LABEL_late
     catalyst cli_again cli_background cli_bench cli_figures
-    cli_interrupt cli_measurements cli_ranks cli_real
+    cli_interrupt cli_limits cli_measurements cli_ranks cli_real
     cli_shear_warp cli_show mpi_comm oracle_amr oracle_damage oracle_dicom oracle_fit oracle_hdf5
     oracle_mrc oracle_netcdf oracle_npy oracle_orientation oracle_pictures
     oracle_seg oracle_series oracle_slice oracle_tiff oracle_vtk oracle_zarr test_comm
@@ -50,7 +50,7 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     cli_documents cli_bench cli_figures cli_ranks cli_stream
     cli_again cli_matrix cli_turntable cli_modules cli_memory cli_progress
     serve_browser cli_interrupt cli_large cli_measurements oracle_zarr oracle_tiff
-    oracle_vtk oracle_pictures oracle_damage)
+    oracle_vtk oracle_pictures oracle_damage cli_limits)
 
 # Seconds that a test of the long tier took on a quiet machine of two cores, of
 # those that take more than eight.  ctest begins with the longest, so that no core

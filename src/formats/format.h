@@ -10,6 +10,10 @@
 #include "io/writer.h"
 #include "volume/volume.h"
 
+/* The most bytes of a tag or a comment of XML: expat reads an unfinished one
+ * again with each piece of the file. */
+#define SNOW_XML_TAG_BYTES ((uint64_t)1 << 20)
+
 /* A volume format.  `read` gets the source at its first byte (gzip undone) and
  * makes the volume; its messages need not name the file, and its options are
  * never NULL; `probe` says whether the first `size` bytes look like the

@@ -8,6 +8,7 @@
 #include "formats/index/index.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Places may differ from the grid by this share of a voxel: origins are often
@@ -247,6 +248,31 @@ static snow_status read_box(mosaic *m, const snow_volume_options *options,
     return SNOW_STATUS_OK;
 }
 
+static int by_name(const void *a, const void *b) {
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* A list that names one file 200,000 times would open it as often. */
+static snow_status check_names(const mosaic *m) {
+    snow_context *context = m->list->context;
+    const char **names = snow_allocate_array(context, m->count, sizeof *names);
+    snow_status status = SNOW_STATUS_OK;
+    if (!names)
+        return SNOW_STATUS_NO_MEMORY;
+    for (size_t i = 0; i < m->count; i++)
+        names[i] = snow_index_name(m->list, m->begin + i);
+    qsort(names, m->count, sizeof *names, by_name);
+    for (size_t i = 1; i < m->count && status == SNOW_STATUS_OK; i++)
+        if (!strcmp(names[i], names[i - 1]))
+            status = snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                               "names %s more than once, but each part of a "
+                               "grid has a file of its own; write the list "
+                               "again",
+                               names[i]);
+    snow_release(context, names);
+    return status;
+}
+
 snow_status snow_mosaic_read(snow_source *source, const index_list *list,
                              size_t first, size_t end,
                              const snow_volume_options *options,
@@ -256,7 +282,9 @@ snow_status snow_mosaic_read(snow_source *source, const index_list *list,
     m.parts = snow_allocate_array(list->context, m.count, sizeof *m.parts);
     if (!m.parts)
         return SNOW_STATUS_NO_MEMORY;
-    snow_status status = read_box(&m, options, info, out);
+    snow_status status = check_names(&m);
+    if (status == SNOW_STATUS_OK)
+        status = read_box(&m, options, info, out);
     snow_release(list->context, m.parts);
     return status;
 }

@@ -21,10 +21,6 @@ const char *snow_index_attribute(const char **attributes, const char *name) {
 /* Bytes of the text: more steps than any series has. */
 #define MOST_TEXT ((uint64_t)256 << 20)
 
-/* Bytes of a tag or a comment: expat reads an unfinished one again with each
- * piece of the file. */
-#define MOST_TOKEN ((uint64_t)1 << 20)
-
 typedef struct parse {
     snow_context *context;
     XML_Parser parser;
@@ -96,13 +92,13 @@ static snow_status feed(snow_source *source, parse *p) {
         if (!got)
             return SNOW_STATUS_OK;
         const XML_Index begun = XML_GetCurrentByteIndex(p->parser);
-        if (begun >= 0 && fed - (uint64_t)begun > MOST_TOKEN)
+        if (begun >= 0 && fed - (uint64_t)begun > SNOW_XML_TAG_BYTES)
             return snow_fail(
                 p->context, SNOW_STATUS_BAD_INPUT,
                 "has a tag or a comment of more than %llu bytes "
                 "in line %lu; it is damaged, get or write it "
                 "again",
-                (unsigned long long)MOST_TOKEN,
+                (unsigned long long)SNOW_XML_TAG_BYTES,
                 (unsigned long)XML_GetCurrentLineNumber(p->parser));
         if (fed > MOST_TEXT)
             return snow_fail(p->context, SNOW_STATUS_BAD_INPUT,

@@ -15,9 +15,6 @@
 #include <expat.h>
 #include <string.h>
 
-/* The most bytes without the end of what they began, for example a tag. */
-#define MOST_PENDING ((uint64_t)1 << 20)
-
 /* Limit for sums of indices, far above any grid. */
 #define MOST_INDEX ((int64_t)1 << 40)
 
@@ -362,11 +359,11 @@ static snow_status feed(snow_source *source, vti_text *text) {
         SNOW_TRY(snow_source_skip(source, got, "the header"));
         fed += got;
         XML_Index at = XML_GetCurrentByteIndex(text->parser);
-        if (at >= 0 && fed - (uint64_t)at > MOST_PENDING)
+        if (at >= 0 && fed - (uint64_t)at > SNOW_XML_TAG_BYTES)
             return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
                              "has a tag of more than %llu bytes; it is damaged "
                              "or not a VTI file",
-                             (unsigned long long)MOST_PENDING);
+                             (unsigned long long)SNOW_XML_TAG_BYTES);
     }
 }
 

@@ -121,7 +121,10 @@ static snow_status parse(snow_context *context, snow_seekable *bytes,
         size_t got = snow_seekable_read(bytes, at, text, TEXT_BYTES);
         answer = XML_Parse(s->parser, text, (int)got, got == 0);
         at += got;
-        if (!got)
+        /* An unfinished tag is read again with each piece of the text; the
+         * reader of the values says so. */
+        const XML_Index begun = XML_GetCurrentByteIndex(s->parser);
+        if (!got || (begun >= 0 && at - (uint64_t)begun > SNOW_XML_TAG_BYTES))
             break;
     }
     snow_release(context, text);
