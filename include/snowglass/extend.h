@@ -6,12 +6,11 @@
 #include <snowglass/ranks.h>
 
 /* Leaves the message of a failure and returns `status`; gives a warning. Text
- * as of printf, one line without its end. */
+ * as of printf, one line without its end, which the last function makes it. */
 SNOW_API snow_status snow_context_fail(snow_context *context,
     snow_status status, const char *format, ...) SNOW_PRINTF(3, 4);
 SNOW_API void snow_context_warn(snow_context *context, const char *format, ...)
     SNOW_PRINTF(2, 3);
-/* Escapes what is no letter, and shortens long words, as all messages are. */
 SNOW_API void snow_text_to_line(char *text, size_t capacity);
 
 /* A block of the context's memory, aligned to 64, or NULL and a message;

@@ -16,6 +16,8 @@
 #define WORD_BYTES 100
 #define VALUE_BYTES 1000
 
+#ifndef __EMSCRIPTEN__
+
 /* Bytes of the letter of UTF-8 that a text begins with (RFC 3629), and its
  * number; 0: none, or not all of it. */
 static size_t letter_bytes(const unsigned char *text, uint32_t *letter) {
@@ -127,3 +129,13 @@ void snow_text_to_line(char *text, size_t capacity) {
     }
     *out = 0;
 }
+
+#else
+
+/* A page shows text as text, whatever is in it, and is small. */
+void snow_text_to_line(char *text, size_t capacity) {
+    (void)text;
+    (void)capacity;
+}
+
+#endif
