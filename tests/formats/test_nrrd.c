@@ -544,7 +544,7 @@ static void contradictions_are_refused(void **state) {
          "time steps"},
         {RAW "spacings: 1 1\n\n", "spacings"},
         {RAW "spacings: 1 1 1 1\n\n", "spacings"},
-        {RAW "spacings: 1 1 1\x1b[31m\n\n", "1?[31m"},
+        {RAW "spacings: 1 1 1\x1b[31m\n\n", "1\\033[31m"},
         {RAW "spacing: 1 1 1\n\n", "is not a field"},
         {RAW "kinds: domain domain domain time\n\n", "kinds"},
         {RAW "kinds: domain domain\n\n", "kinds"},

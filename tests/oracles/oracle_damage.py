@@ -24,7 +24,6 @@ CORPUS = os.path.join(os.path.dirname(os.path.abspath(__file__)),
 FILL = "MALLOC_PERTURB_"
 JPEG = "1.2.840.10008.1.2.4."
 IN_BLOCKS = "middle", "to the end marker"
-place = oracle.folder()
 y, x = np.mgrid[:60, :72]
 picture = ((x * 3 + y * 2) % 251).astype("u1")
 

@@ -60,7 +60,7 @@ hardened() {
     check "the tool checks its stack" grep -q __stack_chk_fail elf.tool
     check "the tool checks its copies" grep -Eq '__[a-z]+_chk' elf.tool
 }
-readelf -W -s "$(find runtime -name snowglass -type f)" >elf.tool
+readelf -W -s "$(find runtime -path "*/bin/snowglass")" >elf.tool
 if grep -q 'SNOW_HARDEN:BOOL=ON' "$BUILD/CMakeCache.txt" &&
     grep -q 'CMAKE_BUILD_TYPE:STRING=Release' "$BUILD/CMakeCache.txt"; then
     hardened

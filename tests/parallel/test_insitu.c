@@ -440,8 +440,8 @@ static scene scene_of(int n) {
 /* Largest and smallest values to the bit, sums but for rounding. */
 static double bound_of(const scene *s) {
     switch (s->settings.mode) {
-    case SNOW_MODE_OVER:
-        return BOUND;
+    case SNOW_MODE_OVER: /* each rank's layer is rounded to 15 bits */
+        return BOUND + s->ranks / 32767.0;
     case SNOW_MODE_ISO:
         return 1e-4;
     default:

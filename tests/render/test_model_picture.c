@@ -209,7 +209,8 @@ static reference_scene no_numbers_and_infinities(size_t n, uint64_t *random) {
         else
             model_voxels(&scene)[at] = (float)value;
     }
-    scene.settings.method = (snow_method)(SNOW_METHOD_ORIGINAL + n % 3);
+    scene.settings.method = (snow_method[]){
+        SNOW_METHOD_ORIGINAL, SNOW_METHOD_TESTED, SNOW_METHOD_FOOTPRINT}[n % 3];
     return scene;
 }
 

@@ -1,16 +1,17 @@
 /* tests/render/test_shear_warp_slabs.c - method shear-warp by slabs of a file,
  * and of two files in one picture: the bits of what is in memory, which
  * test_truth.c holds against the truth. */
-#include "support/scenario.h"
 #include "support/files.h"
+#include "support/scenario.h"
 
 #include <math.h>
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
-/* Where the second volume is resampled, also for few pixels: in memory the
- * range of the resampled values is known then, and that of the file is somewhat
- * more, so that their 14 bits and the nodes of their table are others. */
+/* Where the second volume is resampled, also for few pixels, or a box of it is
+ * taken: in memory the range of these values is known then, and that of the
+ * file is somewhat more, so that their 14 bits and the nodes of their table are
+ * others.  Labels have no such range. */
 #define BOUND_RESAMPLED (6.0 / 255)
 
 /* A scene, perhaps with a second volume in its picture. */
@@ -93,7 +94,7 @@ static void compare_pictures(const pair *p, int n, snow_image *a,
                              snow_image *b) {
     const snow_mode mode = p->base.settings.mode;
     const bool sums = mode == SNOW_MODE_MEAN || mode == SNOW_MODE_SUM;
-    const bool resampled = p->layered && ((n % 3 == 1 && n / 3 % 2 == 0) ||
+    const bool resampled = p->layered && ((n % 3 != 2 && n / 3 % 2 == 0) ||
                                           p->base.view.width < 10);
     assert_int_equal(snow_image_channels(a), snow_image_channels(b));
     const double gap =
@@ -143,8 +144,7 @@ static pair pair_of(support_files *place, int n, bool layered) {
         p.options.crop[1][1] = 21;
         p.options.crop[2][0] = layered ? 0 : 3;
         p.options.crop[2][1] = 28;
-        snprintf(mask, sizeof mask, "%s",
-                 support_path(place, "base.mha"));
+        snprintf(mask, sizeof mask, "%s", support_path(place, "base.mha"));
         p.options.mask = p.base.masked ? mask : NULL;
     }
     if (layered) {

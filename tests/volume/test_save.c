@@ -158,7 +158,7 @@ static void what_nifti_1_cannot_hold_becomes_nifti_2(void **state) {
     support_same_voxels(volume, back);
     snow_volume_close(back);
     snow_volume_close(volume);
-    static const double tiny[4][4] = {{1e-42, 0, 0, 1e300},
+    static const double tiny[4][4] = {{1e-42, 0, 0, 1e60},
                                       {0, 1e-42, 0, 0.1},
                                       {0, 0, 1e-42, 0.3},
                                       {0, 0, 0, 1}};

@@ -4,6 +4,7 @@
 #include "support/files.h"
 
 #include "image/image.h"
+#include "render/tested.h"
 #include "volume/stream.h"
 
 #include <math.h>
@@ -270,7 +271,8 @@ static void draw_by_footprints(size_t i, snow_type type, snow_view *view,
                                snow_settings *settings) {
     (void)type;
     (void)view;
-    settings->method = (snow_method)(SNOW_METHOD_ORIGINAL + i % 3);
+    settings->method = (snow_method[]){SNOW_METHOD_ORIGINAL, SNOW_METHOD_TESTED,
+                                       SNOW_METHOD_FOOTPRINT}[i % 3];
     settings->shade = i % 4 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
 }
 
@@ -825,9 +827,9 @@ static void streams_that_cannot_be_read_twice_are_refused(void **state) {
         SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_context_message(place->context),
                            "standard input: can be read only once"));
-    assert_int_equal(snow_volume_open_streamed(
-                         place->context, support_path(place, "none.nrrd"),
-                         NULL, 0, &volume),
+    assert_int_equal(snow_volume_open_streamed(place->context,
+                                               support_path(place, "none.nrrd"),
+                                               NULL, 0, &volume),
                      SNOW_STATUS_BAD_INPUT);
 }
 

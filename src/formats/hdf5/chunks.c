@@ -25,6 +25,9 @@
 #define BATCH_BYTES ((uint64_t)32 << 20)
 #define MOST_SLOTS 64
 
+/* Fewer are unpacked before other threads are awake. */
+#define THREADED_BYTES ((uint64_t)1 << 18)
+
 /* A chunk on its way: its first element, and its bytes. */
 typedef struct chunk_slot {
     hsize_t first[HDF5_MOST_AXES];
@@ -207,8 +210,9 @@ static snow_status read_chunks(box_job *job, int slots) {
             SNOW_TRY(load_chunk(job, &job->slots[count]));
             more = next_chunk(job, chunk);
         }
-        SNOW_TRY(snow_parallel(job->context, snow_processors(), count,
-                               unpack_one, job));
+        const bool worth = (uint64_t)count * job->bytes >= THREADED_BYTES;
+        SNOW_TRY(snow_parallel(job->context, worth ? snow_processors() : 1,
+                               count, unpack_one, job));
         for (int i = 0; i < count; i++)
             SNOW_TRY(take_chunk(job, &job->slots[i]));
         job->done += (uint64_t)count;
