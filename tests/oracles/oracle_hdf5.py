@@ -279,11 +279,13 @@ def write_chunk(path, size, way, stored, mask):
         made.id.write_direct_chunk((0, 0, 0), stored, filter_mask=mask)
 
 
+# Without filters all chunks are taken for equally long: the file ends too soon.
 for way, pack, mask in KINDS:
     for count in oracle.few((1, 2, 3, 5, 100, 200, 1000, 4096), 3, len(way)):
         write_chunk("l.h5", 16, way, pack(bytes(i % 31 for i in range(count))),
                     mask)
-        oracle.refuse("l.h5", "its chunk at 0,0,0")
+        if way or count < 4096:
+            oracle.refuse("l.h5", "its chunk at 0,0,0" if way else "l.h5: ")
 for way in (dict(compression="gzip"), SHUFFLED):
     long = np.concatenate([oracle.sample("<i2", (16,) * 3).ravel(),
                            np.arange(50, dtype="<i2")])
