@@ -119,13 +119,17 @@ void snow_text_to_line(char *text, size_t capacity) {
         at = first;
     }
     while (*at) {
-        const size_t blanks = strspn(at, " "),
-                     length = strcspn(at + blanks, " ");
+        const size_t blanks = strspn(at, " ");
+        size_t length = strcspn(at + blanks, " ");
+        if (length && strchr(":;,.", at[blanks + length - 1]))
+            length--; /* of the sentence, not of the word */
         memcpy(out, at, blanks);
         out += blanks;
         at += blanks;
         out += put_word(at, length, memchr(at, '/', length) != NULL, out);
         at += length;
+        for (; *at && *at != ' '; at++)
+            *out++ = *at;
     }
     *out = 0;
 }

@@ -103,7 +103,7 @@ with insitu.Movie(comm, (4, 4, 4), output="f_%02d.png") as movie:
     # Rank 0 writes; the others know why it does not.
     refuses(lambda: movie.step(0), "give overwrite=True to Movie", status=4)
 
-# No message is cut, however long the path in it is.
+# Of a long path a message has the end.
 deep = "/".join(["folder" * 30] * 12)
 if comm.rank == 0:
     os.makedirs(deep, exist_ok=True)
@@ -112,5 +112,6 @@ if comm.rank == 0:
 with insitu.Movie(comm, (4, 4, 4), output=f"{deep}/f_%02d.png") as movie:
     if comm.rank == 0:
         movie.brick(wide)
-    refuses(lambda: movie.step(0), f"{deep}/f_00.png: exists; remove it, choose "
+    refuses(lambda: movie.step(0),
+            f"...{deep[-188:]}/f_00.png: exists; remove it, choose "
             "another output, or give overwrite=True to Movie", status=4)
