@@ -286,6 +286,12 @@ for way, pack, mask in KINDS:
                     mask)
         if way or count < 4096:
             oracle.refuse("l.h5", "its chunk at 0,0,0" if way else "l.h5: ")
+write_chunk("l.h5", 16, SHUFFLED, b"x" * 123, 0)  # h5py writes none of 0 bytes
+with open("l.h5", "rb") as file:
+    whole = file.read()
+key = struct.pack("<II", 123, 0)  # of the chunk in its B-tree: size, mask
+oracle.put("l.h5", whole.replace(key, bytes(8), 1))
+oracle.refuse("l.h5", "its chunk at 0,0,0 has no bytes")
 for way in (dict(compression="gzip"), SHUFFLED):
     long = np.concatenate([oracle.sample("<i2", (16,) * 3).ravel(),
                            np.arange(50, dtype="<i2")])

@@ -327,8 +327,8 @@ static snow_status list_siblings(snow_context *context, const char *path,
     return status;
 }
 
-/* Whether two names end alike: ".dcm" and ".DCM", or both in nothing that is no
- * number. */
+/* Returns whether two names have the same suffix, as ".dcm" and ".DCM", or both
+ * have none.  A number after the last point is not a suffix. */
 static bool ends_alike(const char *a, const char *b) {
     const char *x = strrchr(snow_path_name(a), '.');
     const char *y = strrchr(snow_path_name(b), '.');

@@ -52,8 +52,7 @@ typedef struct box_job {
     uint64_t done;
 } box_job;
 
-/* --- where chunks lie ------------------------------------------------------
- */
+/* --- where chunks lie ----------------------------------------------------- */
 
 /* Elements low .. high - 1 of an axis, which are in chunk and box. */
 static void overlap(const box_job *job, const hsize_t *chunk, int axis,
@@ -120,8 +119,7 @@ static snow_status fail_chunk(const box_job *job, const hsize_t *chunk,
                      place, what);
 }
 
-/* --- a chunk as it is stored -----------------------------------------------
- */
+/* --- a chunk as it is stored ---------------------------------------------- */
 
 /* libhdf5 fails for a chunk that was never written, and no function below it:
  * one that cannot be looked up has an error of its own. */
@@ -133,21 +131,40 @@ static herr_t find_absence(unsigned depth, const H5E_error2_t *error,
     return 0;
 }
 
-/* Reads the stored bytes of a chunk; none if it was never written. */
+/* Returns whether a chunk of no bytes has a place in the file, which is damaged
+ * then. */
+static bool has_place(const box_job *job, const hsize_t *first) {
+#if H5_VERSION_GE(1, 10, 5)
+    unsigned mask;
+    haddr_t place = HADDR_UNDEF;
+    hsize_t size;
+    return H5Dget_chunk_info_by_coord(job->set, first, &mask, &place, &size) >=
+               0 &&
+           place != HADDR_UNDEF;
+#else
+    (void)job;
+    (void)first;
+    return true;
+#endif
+}
+
+/* Reads the stored bytes of a chunk, if it was ever written. */
 static snow_status load_chunk(const box_job *job, chunk_slot *slot) {
     hdf5_packed *packed = &slot->packed;
     hsize_t size = 0;
+    packed->given = false;
     if (H5Dget_chunk_storage_size(job->set, slot->first, &size) < 0) {
         bool absent = false;
         H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, find_absence, &absent);
         if (!absent)
             return snow_hdf5_fail(job->context, "its chunks cannot be found");
-        size = 0;
-    }
-    packed->size = 0;
-    packed->given = size > 0;
-    if (!size)
         return SNOW_STATUS_OK;
+    }
+    packed->given = size || has_place(job, slot->first);
+    if (!packed->given)
+        return SNOW_STATUS_OK;
+    if (!size)
+        return fail_chunk(job, slot->first, "has no bytes");
     if (size > snow_hdf5_size(job->file))
         return fail_chunk(job, slot->first,
                           "claims more bytes than the file has");
@@ -240,8 +257,7 @@ static snow_status read_by_chunks(box_job *job) {
     return status;
 }
 
-/* --- what libhdf5 unpacks --------------------------------------------------
- */
+/* --- what libhdf5 unpacks ------------------------------------------------- */
 
 /* Whether the chunks of the box are as long as their filters' headers say. */
 static snow_status check_chunks(box_job *job) {
@@ -281,8 +297,7 @@ static snow_status read_by_library(const box_job *job) {
     return status;
 }
 
-/* --- any -------------------------------------------------------------------
- */
+/* --- any ------------------------------------------------------------------ */
 
 /* Sizes, chunks, filters and fill value; false where libhdf5 fails. */
 static bool describe(box_job *job, hid_t plan, H5D_layout_t *layout) {

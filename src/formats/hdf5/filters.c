@@ -51,8 +51,7 @@ bool snow_hdf5_read_filters(hid_t plan, hdf5_filters *out) {
     return true;
 }
 
-/* --- fletcher32 ------------------------------------------------------------
- */
+/* --- fletcher32 ----------------------------------------------------------- */
 
 /* The sum of words of 16 bits, the high byte first, and the sum of these sums,
  * both modulo 65,535. */
@@ -97,8 +96,7 @@ static const char *undo_fletcher(hdf5_packed *packed) {
                : "does not match its checksum";
 }
 
-/* --- compressors: bytes -> scratch, at most `most` of them -----------------
- */
+/* --- compressors: bytes -> scratch, at most `most` of them ---------------- */
 
 /* The result is a fault, or NULL; *out is what came, `more` whether something
  * was left. */
@@ -197,8 +195,7 @@ static void undo_compressor(snow_context *context, int id, uint64_t most,
     packed->size = got;
 }
 
-/* --- shuffle -----------------------------------------------------------------
- */
+/* --- shuffle -------------------------------------------------------------- */
 
 /* The first bytes of all elements, then the second ones; an incomplete element
  * at the end stays. */
@@ -222,8 +219,7 @@ static void undo_shuffle(snow_context *context, uint64_t width,
     packed->bytes = values;
 }
 
-/* --- filters of libhdf5 and of plugins ---------------------------------------
- */
+/* --- filters of libhdf5 and of plugins ------------------------------------ */
 
 static uint64_t number(const unsigned char *bytes, int size, bool big) {
     uint64_t value = 0;
@@ -285,8 +281,7 @@ static const char *check_foreign(int id, const unsigned *settings, size_t count,
     return made < bytes ? "unpacks to fewer bytes than it should" : NULL;
 }
 
-/* --- all of them
- * --------------------------------------------------------------- */
+/* --- all of them ---------------------------------------------------------- */
 
 void snow_hdf5_unpack(snow_context *context, const hdf5_filters *filters,
                       uint64_t bytes, hdf5_packed *packed) {
