@@ -5,5 +5,4 @@
 # the build is in a folder of the copy, as that of ./dev is, and made by Ninja,
 # which runs all compilers in one folder.
 export CCACHE_BASEDIR=$WORK/$1
-export RELEASE_FLAGS="-O3 -DNDEBUG" # of CMake's build type Release
 ! command -v ninja >/dev/null || export CMAKE_GENERATOR=Ninja

@@ -13,17 +13,18 @@ hide_project tests/package/within examples/minimal.c examples/array.c
 
 built=snowglass/built
 configure() {
-    cmake -S within -B $built -DSNOWGLASS="$WORK/snowglass" \
-        -DPROGRAM="$WORK/minimal.c" -DCMAKE_C_FLAGS="$RELEASE_FLAGS"
+    cmake -S within -B "$1" -DSNOWGLASS="$WORK/snowglass" \
+        -DPROGRAM="$WORK/minimal.c" -DCMAKE_BUILD_TYPE="$2"
 }
-run 0 "it is added" configure
+run 0 "it is added" configure $built Release
 run 0 "it is built" cmake --build $built -j 2
 grep -E 'error|undefined' "$ERR"
 check "shared: draws" draws "" $built/out/shared shared
 check "static: draws" draws "" $built/out/static static
 check "static: needs no library of ours" needs_no_snowglass $built/out/static
+run 0 "it is added to one without a build type" configure plain ""
 check "the build type is the project's own" \
-    grep -q '^CMAKE_BUILD_TYPE:STRING=$' $built/CMakeCache.txt
+    grep -q '^CMAKE_BUILD_TYPE:STRING=$' plain/CMakeCache.txt
 check "its tests are not the project's" \
     [ -z "$(grep BUILD_TESTING $built/CMakeCache.txt)" ]
 run 0 "the project is installed" cmake --install $built --prefix "$WORK/third"
