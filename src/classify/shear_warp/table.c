@@ -21,7 +21,6 @@ typedef struct entry_ways {
     float sum[ENTRIES][4], places[ENTRIES][4];
 } entry_ways;
 
-#define TARGET_ALSO SNOW_UNWATCHED
 #define TEMPLATE "classify/shear_warp/entries.tmpl.h"
 #include "simd/each_isa.h"
 
