@@ -3,13 +3,15 @@ corpora and for small files that ask for much.
 
 A reader takes at most 64 MB and three times the decoded size of what is shown,
 as `info` prints it, beyond what the tool takes for a file of one voxel; and time
-that grows with the bytes read, for which two seconds are ample here.
+that grows with the bytes read, for which two seconds are ample here.  What a
+picture needs beyond `--memory` is refused before it is allocated.
 """
 import json
 import os
 import subprocess
 import sys
 import tempfile
+import zlib
 
 TOOL, CORPUS = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 BYTES = {"int8": 1, "uint8": 1, "int16": 2, "uint16": 2, "int32": 4,
@@ -18,10 +20,10 @@ MOST_BYTES, MOST_SECONDS = 64 << 20, 2
 wrong = checked = 0
 
 
-def measure(path):
+def measure(*words):
     """(exit status, report or None, bytes at most, processor seconds)"""
     with tempfile.TemporaryFile() as out:
-        made = subprocess.Popen([TOOL, "info", "--json", "-q", path], stdout=out,
+        made = subprocess.Popen([TOOL, *words, "-q"], stdout=out,
                                 stderr=subprocess.DEVNULL,
                                 stdin=subprocess.DEVNULL)
         _, status, used = os.wait4(made.pid, 0)
@@ -44,7 +46,7 @@ def decoded(report):
 def check(path, least, statuses=(0, 2, 3)):
     global wrong, checked
     checked += 1
-    status, report, most, seconds = measure(path)
+    status, report, most, seconds = measure("info", "--json", path)
     limit = least + MOST_BYTES + 3 * decoded(report)
     faults = [f"ends with {status}"] if status not in statuses else []
     if most > limit:
@@ -97,15 +99,83 @@ WholeExtent="0 1 0 1 0 1" GhostLevel="0" Origin="0 0 0" Spacing="1 1 1">
               200000, b"</PImageData></VTKFile>"), (0, 3)
 
 
+SIDE, LIMIT = 640, 40 << 20  # voxels along each axis, bytes
+
+
+def zeros(count, head=b""):
+    """What zlib makes of `count` bytes: the head and zeros."""
+    pack = zlib.compressobj(1)
+    parts = [pack.compress(head)]
+    for _ in range(count >> 16):
+        parts.append(pack.compress(bytes(1 << 16)))
+    parts += [pack.compress(bytes(count & 0xffff)), pack.flush()]
+    return b"".join(parts)
+
+
+def zarr(name, side):
+    """A volume of which one chunk has all voxels, or more than it."""
+    os.mkdir(name)
+    with open(f"{name}/.zarray", "w", encoding="ascii") as file:
+        json.dump({"zarr_format": 2, "shape": [side] * 3, "chunks": [SIDE] * 3,
+                   "dtype": "|u1", "compressor": {"id": "zlib", "level": 1},
+                   "fill_value": 0, "order": "C", "filters": None}, file)
+    put(f"{name}/0.0.0", zeros(SIDE ** 3))
+    return name
+
+
+def png(width, height):
+    def part(kind, content):
+        return len(content).to_bytes(4, "big") + kind + content + \
+            zlib.crc32(kind + content).to_bytes(4, "big")
+    sizes = width.to_bytes(4, "big") + height.to_bytes(4, "big")
+    return (b"\x89PNG\r\n\x1a\n" + part(b"IHDR", sizes + b"\x08\0\0\0\0") +
+            part(b"IDAT", zeros((width + 1) * height)) + part(b"IEND", b""))
+
+
+HDF5 = f"""import h5py
+data = h5py.File("one.h5", "w").create_dataset(
+    "d", [{SIDE}] * 3, "u1", chunks=({SIDE},) * 3, compression="lzf")
+data[0] = 1
+"""
+
+
+def larger_than_memory():
+    """Files of a few MB whose voxels are over the limit: (path, exit status);
+    7 says that nothing is seen, 5 that memory is short."""
+    head = (f"NRRD0001\ntype: uint8\ndimension: 3\nsizes: {SIDE} {SIDE} {SIDE}\n"
+            "encoding: raw\n\n").encode()
+    yield put("slabs.nrrd", head, len(head) + SIDE ** 3), 7
+    yield zarr("one.zarr", SIDE), 5
+    yield zarr("large.zarr", 64), 5
+    yield put("wide.png", png(20000, 12000)), 5
+    # By another process: what this one holds counts for its children.
+    if subprocess.run([sys.executable, "-c", HDF5], check=False,
+                      stderr=subprocess.DEVNULL).returncode == 0:
+        yield "one.h5", 5
+
+
+def check_memory(path, expected, least):
+    global wrong, checked
+    checked += 1
+    status, _, most, _ = measure("render", path, "-o", "o.png", "-y", "-s",
+                                 "64x64", "--memory", str(LIMIT))
+    if status != expected or most > least + LIMIT:
+        wrong += 1
+        print(f"FAILED {path}: --memory {LIMIT}: ends with {status}, "
+              f"takes {most} bytes")
+
+
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     put("one.nrrd", b"NRRD0001\ntype: uint8\ndimension: 3\nsizes: 1 1 1\n"
         b"encoding: raw\n\n\1")
-    base = measure("one.nrrd")[2]
+    base = measure("info", "--json", "one.nrrd")[2]
     for root, _, names in os.walk(CORPUS):
         for name in sorted(names):
             check(os.path.join(root, name), base)
     for path, statuses in demanding():
         check(os.path.abspath(path), base, statuses)
+    for path, status in larger_than_memory():
+        check_memory(path, status, base)
 print(f"{checked} files, {wrong} wrong")
 sys.exit(wrong > 0)
