@@ -359,6 +359,26 @@ static void packed_pixels_must_be_what_the_header_says(void **state) {
     }
 }
 
+/* Plain pixels whose bytes may be in any order: a private syntax of GE, one
+ * that is cut, one that is longer than a name can be, and one of movies. */
+static void plain_pixels_in_an_unknown_syntax_are_refused(void **state) {
+    static const char *const syntaxes[] = {
+        "1.2.840.113619.5.2", "1.2.840.10008.1.2.1.9", "1.2.840.10008.1.2.99",
+        "1.2.840.10008.1.2.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1."
+        "1",
+        "1.2.840.10008.1.2.7.1"};
+    static const unsigned char words[16];
+    for (size_t i = 0; i < sizeof syntaxes / sizeof *syntaxes; i++) {
+        file f;
+        char part[128];
+        begin(&f, syntaxes[i], 0);
+        element(&f, 0x7fe00010, "OW", words, sizeof words);
+        snprintf(part, sizeof part, "unknown way (transfer syntax %.64s)",
+                 syntaxes[i]);
+        refuse(*state, &f, part);
+    }
+}
+
 /* --- deflated files ------------------------------------------------------- */
 
 #define BOMB_BYTES ((uint32_t)65 << 20)
@@ -425,6 +445,7 @@ int main(void) {
         SUPPORT_TEST(run_lengths_are_unpacked),
         SUPPORT_TEST(headers_that_contradict_the_pixels_are_refused),
         SUPPORT_TEST(packed_pixels_must_be_what_the_header_says),
+        SUPPORT_TEST(plain_pixels_in_an_unknown_syntax_are_refused),
         SUPPORT_TEST(a_deflated_bomb_costs_nothing),
         SUPPORT_TEST(a_deflated_bomb_before_the_pixels_is_refused),
     };

@@ -332,6 +332,23 @@ static snow_status check_after(walk *w, coding how) {
                      h.tag >> 16, h.tag & 0xffff);
 }
 
+/* Pixels in a syntax that nobody knows would be read as if they were plain: a
+ * private one of GE has little-endian elements but big-endian pixels. */
+static snow_status check_syntax(const dicom_reader *r) {
+    const size_t common = sizeof IMPLICIT - 1;
+    const char *end = r->syntax + common;
+    if (!*r->syntax || !strcmp(r->syntax, DEFLATED) ||
+        (!memcmp(r->syntax, IMPLICIT, common) &&
+         (!*end || (*end == '.' && end[2] == (end[1] == '4' ? '.' : 0) &&
+                    end[1] && strchr("1245", end[1])))))
+        return SNOW_STATUS_OK;
+    return snow_fail(r->context, SNOW_STATUS_BAD_INPUT,
+                     "its pixels are stored in an unknown way (transfer syntax "
+                     "%.64s), which is not supported; decompress it, for "
+                     "example with gdcmconv --raw",
+                     r->syntax);
+}
+
 /* Walks elements up to `end`, or a delimiter if that is UINT64_MAX.  The file
  * itself ends with its last byte; blanks after the last element are dropped. */
 static snow_status walk_set(walk *w, coding how, uint64_t end, int depth) {
@@ -343,6 +360,8 @@ static snow_status walk_set(walk *w, coding how, uint64_t end, int depth) {
         SNOW_TRY(next_head(w, how, &h));
         if (h.tag == TAG_ITEM_END && depth)
             return SNOW_STATUS_OK;
+        if (depth == 0 && h.tag == DICOM_TAG_PIXELS)
+            SNOW_TRY(check_syntax(w->reader));
         if (depth == 0 && h.tag == DICOM_TAG_PIXELS && w->stops) {
             w->reader->has_pixels = true;
             w->reader->packed = h.length == UNDEFINED;
@@ -371,8 +390,10 @@ static snow_status walk_meta(walk *w) {
             return SNOW_STATUS_OK;
         SNOW_TRY(next_head(w, how, &h));
         SNOW_TRY(check_length(w, &h));
-        if (h.tag == TAG_SYNTAX && h.length < sizeof w->reader->syntax) {
-            snow_seekable_read(w->reader->store, w->at, syntax, h.length);
+        if (h.tag == TAG_SYNTAX) {
+            const size_t most = sizeof w->reader->syntax - 1;
+            snow_seekable_read(w->reader->store, w->at, syntax,
+                               h.length < most ? h.length : most);
             for (size_t i = strlen(syntax); i && syntax[i - 1] == ' ';)
                 syntax[--i] = 0;
         }
