@@ -114,6 +114,67 @@ static void what_is_no_image_is_refused(void **state) {
                          cases[i][1]);
 }
 
+#define APPENDED(encoding, data)                                       \
+    FILE_TAG GRID                                                      \
+        "<DataArray type=\"UInt8\" Name=\"a\" format=\"appended\" "    \
+        "offset=\"0\"/></PointData></Piece></ImageData><AppendedData " \
+        "encoding=\"" encoding "\">_" data
+
+/* The tags behind the array that is read. */
+static void tags_that_cross_or_have_no_end_are_refused(void **state) {
+    support_files *files = *state;
+    static const char *const ends[] = {
+        "</PointData></DataArray></Piece></ImageData></VTKFile>",
+        "</DataArray></PointData></Piece></VTKFile></ImageData>",
+        "</DataArray></PointData></Piece></ImageData>",
+        "</DataArray></PointData></Piece></ImageData></VTKFile",
+        "</DataArray></PointData><CellData></Piece></ImageData></VTKFile>",
+        "</DataArray></PointData></Piece></ImageData><AppendedData "
+        "encoding=\"raw\">_<&</AppendedData>",
+        "",
+    };
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        char text[1024];
+        const char *const starts[] = {
+            FILE_TAG GRID ARRAY("a", "ascii") "0 1 2 3 4 5",
+            FILE_TAG GRID ARRAY("a", "binary") BYTES};
+        for (int k = 0; k < 2; k++) {
+            snprintf(text, sizeof text, "%s%s", starts[k], ends[i]);
+            support_bad_file(files, support_write_text(files, "a.vti", text),
+                             i == 6 && !k ? "" : "damaged behind the array");
+        }
+    }
+    static const char *const appended[] = {
+        APPENDED("base64", BYTES),
+        APPENDED("base64", BYTES "</AppendedData>"),
+        APPENDED("base64", BYTES "</Appended></VTKFile>"),
+        APPENDED("base64", BYTES "</AppendedData></Piece></VTKFile>"),
+        APPENDED("raw", "\6!!!012345</AppendedData></ImageData>"),
+        APPENDED("raw", "\6!!!012345<AppendedData")};
+    for (size_t i = 0; i < sizeof appended / sizeof *appended; i++) {
+        char text[1024];
+        snprintf(text, sizeof text, "%s", appended[i]);
+        const size_t size = strlen(text);
+        for (size_t k = 0; k < size; k++)
+            text[k] = text[k] == '!' ? 0 : text[k];
+        support_bad_file(files, support_write(files, "a.vti", text, size),
+                         i == 0 || i == 2 || i == 5 ? "no end" : "damaged");
+    }
+}
+
+static void bytes_after_the_last_tag_cause_a_note(void **state) {
+    support_files *files = *state;
+    static const char *const texts[] = {
+        FILE_TAG GRID ARRAY("a", "ascii") "0 1 2 3 4 5" END "\n<!-- x -->\1<",
+        APPENDED("base64", BYTES "</AppendedData></VTKFile>\n more"),
+    };
+    for (size_t i = 0; i < 2; i++) {
+        expect_counting(opened(files, texts[i], NULL));
+        assert_non_null(strstr(files->warnings, "after its last tag"));
+        *files->warnings = 0;
+    }
+}
+
 /* A compressed array in three blocks of 2 bytes, the sizes as told. */
 static void blocks_that_lie_are_refused(void **state) {
     support_files *files = *state;
@@ -144,6 +205,8 @@ int main(void) {
         SUPPORT_TEST(the_scalars_of_the_file_come_before_others),
         SUPPORT_TEST(appended_arrays_lie_at_their_offsets),
         SUPPORT_TEST(what_is_no_image_is_refused),
+        SUPPORT_TEST(tags_that_cross_or_have_no_end_are_refused),
+        SUPPORT_TEST(bytes_after_the_last_tag_cause_a_note),
         SUPPORT_TEST(blocks_that_lie_are_refused),
     };
     const char *version, *formats;

@@ -60,6 +60,7 @@ static snow_status read_xml(snow_source *source, bool rectilinear,
     vti_header header = {.grid = {.rectilinear = rectilinear}};
     vti_small small = {.time = NAN};
     snow_seekable *bytes = NULL;
+    snow_volume *volume = NULL;
     snow_status status = SNOW_STATUS_OK;
     *info = snow_volume_info_default(rectilinear ? "vtr" : "vti");
     if (rectilinear || snow_source_remaining(source) >= 0) {
@@ -67,8 +68,14 @@ static snow_status read_xml(snow_source *source, bool rectilinear,
         status = snow_vti_survey(source, bytes, rectilinear, &small);
     }
     if (status == SNOW_STATUS_OK)
-        status =
-            read_beside(source, bytes, &header, &small, options, info, out);
+        status = read_beside(source, bytes, &header, &small, options, info,
+                             out ? &volume : NULL);
+    if (status == SNOW_STATUS_OK && bytes && out)
+        status = snow_vti_check_tail(source, bytes, &header);
+    if (status == SNOW_STATUS_OK && out)
+        *out = volume;
+    else
+        snow_volume_close(volume);
     memcpy(header.grid.coordinates, small.coordinates,
            sizeof small.coordinates);
     snow_vtk_release(context, &header.grid);

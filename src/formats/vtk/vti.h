@@ -4,6 +4,7 @@
  *   vti_survey.c  the time and the coordinates, wherever they stand
  *   vti_header.c  the XML text up to the requested array -> vti_header
  *   vti_data.c    the array's bytes -> voxels
+ *   vti_tail.c    the tags behind them
  *
  * After "VTK XML Formats" (docs.vtk.org) and vtkXMLDataParser. */
 #ifndef SNOW_FORMATS_VTK_VTI_H
@@ -23,7 +24,8 @@ typedef struct vti_header {
     vtk_grid grid;
     vtk_array array;
     vti_form form;
-    uint64_t offset; /* of appended data */
+    uint64_t numbers; /* where they begin, or appended data do */
+    uint64_t offset;  /* of appended data */
     bool raw;        /* appended data are not base64 */
     bool big_endian;
     int count_bytes; /* size of the counts before the data: 4 or 8 */
@@ -73,5 +75,10 @@ snow_status snow_vti_read_data(snow_source *source, const vti_header *header,
                                const snow_volume_options *options,
                                int64_t channel, snow_volume_info *info,
                                snow_volume **out);
+
+/* Checks the tags behind an array that was read.  Errors: SNOW_STATUS_BAD_INPUT,
+ * SNOW_STATUS_NO_MEMORY. */
+snow_status snow_vti_check_tail(snow_source *source, snow_seekable *bytes,
+                                const vti_header *header);
 
 #endif

@@ -347,6 +347,7 @@ static snow_status feed(snow_source *source, vti_text *text) {
             XML_Parse(text->parser, bytes, (int)got, got == 0);
         if (text->status != SNOW_STATUS_OK)
             return text->status;
+        text->header->numbers = text->end;
         if (text->done)
             return snow_source_skip(source, text->end - fed, "the header");
         if (answer != XML_STATUS_OK)
