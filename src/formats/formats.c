@@ -229,7 +229,12 @@ static snow_status read_folder(snow_context *context, const char *path,
                                const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
     SNOW_TRY(snow_component_check(context, false, options));
-    if (!snow_zarr_is(context, path))
+    const bool zarr = snow_zarr_is(context, path);
+    if (!zarr && (options->dataset || options->levels))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "files in a folder have no %s; remove the option",
+                         options->dataset ? "--dataset" : "--levels");
+    if (!zarr)
         return snow_stack_read(context, path, options, snow_format_of_name,
                                info, out);
     SNOW_TRY(check_choice(context, &snow_format_zarr, options));
