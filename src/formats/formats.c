@@ -228,17 +228,14 @@ static snow_status open_phantom(snow_context *context, const char *name,
 static snow_status read_folder(snow_context *context, const char *path,
                                const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
-    SNOW_TRY(snow_component_check(context, false, options));
+    static const snow_format slices = {
+        .name = "slices", .channels = true, .series = true};
     const bool zarr = snow_zarr_is(context, path);
-    if (!zarr && (options->dataset || options->levels))
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "files in a folder have no %s; remove the option",
-                         options->dataset ? "--dataset" : "--levels");
-    if (!zarr)
-        return snow_stack_read(context, path, options, snow_format_of_name,
-                               info, out);
-    SNOW_TRY(check_choice(context, &snow_format_zarr, options));
-    return snow_zarr_read_folder(context, path, options, info, out);
+    SNOW_TRY(
+        check_choice(context, zarr ? &snow_format_zarr : &slices, options));
+    return zarr ? snow_zarr_read_folder(context, path, options, info, out)
+                : snow_stack_read(context, path, options, snow_format_of_name,
+                                  info, out);
 }
 
 /* Applies the options for all formats to files in a folder. */

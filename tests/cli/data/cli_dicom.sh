@@ -151,9 +151,9 @@ printed "as JSON" '"value_unit": "HU"' "$TOOL" info hu --json
 printed "info of other values" '^values  *100 \.\. 924, mean 512$' "$TOOL" info whole
 told "a slice beside a gap" "is used alone" "$TOOL" info gap/s_1.dcm
 printed "and with gaps" "^dims  *5 x 5 x 9 " "$TOOL" info gap/s_1.dcm --allow-gaps
-refused 2 "a data set of slices" "whole: files in a folder have no --dataset" \
+refused 2 "a data set of slices" "whole: --dataset x: .* slices have a single" \
     "$TOOL" info whole --dataset x
-refused 2 "levels of slices" "have no --levels" "$TOOL" info whole --levels 2
+refused 2 "levels of slices" "slices have no levels" "$TOOL" info whole --levels 2
 refused 2 "what reads no volume" "allow-gaps: is not an option of" \
     "$TOOL" compare a.png b.png --allow-gaps
 finish

@@ -4,18 +4,21 @@
  *   interrupt   a signal comes into each second write, sync and close
  *   join        the head of a movie cannot be written, and then no folder
  * listed threads     there are no threads; processes for `spawn`; files for
- * `files`
+ * `files` look        the look-up of a path that has the number SNOW_LOOK
+ * fails; then there is a file `met`
  */
-#define _GNU_SOURCE /* RTLD_NEXT, syscall */
+#define _GNU_SOURCE /* RTLD_NEXT, syscall, stat64 */
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <pthread.h>
 #include <spawn.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -34,13 +37,46 @@ static bool is_interrupted(void) {
     return true;
 }
 
+/* Of paths of the system none is lost. */
+static bool is_lost(const char *path) {
+    static int looked;
+    const char *number = getenv("SNOW_LOOK");
+    if (!is_fault("look") || !number || !strncmp(path, "/proc", 5) ||
+        !strncmp(path, "/sys", 4) || !strncmp(path, "/dev", 4) ||
+        ++looked != atoi(number))
+        return false;
+    syscall(SYS_close, syscall(SYS_openat, AT_FDCWD, "met", O_CREAT, 0600));
+    errno = EIO;
+    return true;
+}
+
+#define LOOK(type, name, lost, parameters, ...)          \
+    SEEN type name parameters {                          \
+        type(*real) parameters = NULL;                   \
+        *(void **)&real = dlsym(RTLD_NEXT, #name);       \
+        return is_lost(path) ? lost : real(__VA_ARGS__); \
+    }
+LOOK(int, stat64, -1, (const char *path, struct stat64 *out), path, out)
+LOOK(int, lstat64, -1, (const char *path, struct stat64 *out), path, out)
+LOOK(int, fstatat64, -1,
+     (int at, const char *path, struct stat64 *out, int how), at, path, out,
+     how)
+LOOK(int, access, -1, (const char *path, int mode), path, mode)
+LOOK(int, open64, -1, (const char *path, int how, ...), path, how, 0666)
+LOOK(int, __open64_2, -1, (const char *path, int how), path, how)
+LOOK(int, openat64, -1, (int at, const char *path, int how, ...), at, path, how,
+     0666)
+LOOK(char *, realpath, NULL, (const char *path, char *out), path, out)
+LOOK(char *, __realpath_chk, NULL, (const char *path, char *out, size_t room),
+     path, out, room)
+
 static bool is_broken; /* by the fault `join` */
 
 SEEN DIR *opendir(const char *path) {
     DIR *(*real)(const char *) = NULL;
     *(void **)&real = dlsym(RTLD_NEXT, "opendir");
     errno = EIO;
-    return is_broken ? NULL : real(path);
+    return is_broken || is_lost(path) ? NULL : real(path);
 }
 
 SEEN ssize_t write(int file, const void *bytes, size_t size) {
@@ -82,5 +118,5 @@ SEEN FILE *fopen(const char *path, const char *mode) {
     FILE *(*real)(const char *, const char *) = NULL;
     *(void **)&real = dlsym(RTLD_NEXT, "fopen");
     errno = EMFILE;
-    return is_fault("files") ? NULL : real(path, mode);
+    return is_fault("files") || is_lost(path) ? NULL : real(path, mode);
 }
