@@ -26,9 +26,6 @@ static bool is_stream(const char *path) {
 }
 
 int check_settings(const options *opts) {
-    if (same_output(opts->stats, opts->output))
-        return fail_usage(
-            "--stats: is the same file as --output; name two files");
     if (strcmp(opts->method, "original") == 0 &&
         strcmp(opts->encoding, "auto") != 0)
         return fail_usage("--encoding: method original uses no encoding; "
@@ -43,6 +40,11 @@ int check_settings(const options *opts) {
                           "places the camera; give only one of them");
     int done = annotations_check(opts);
     return done == CONTINUE ? check_look(opts) : done;
+}
+
+int check_stats_apart(const options *opts) {
+    return check_apart(opts->stats, opts->output,
+                       "--stats: is the same file as --output; name two files");
 }
 
 /* Whether the depths become channel Z of the picture's own file. */
@@ -72,13 +74,15 @@ static int check_depth(const options *opts) {
         return fail_usage("--depth: %s cannot hold depths; use a name that "
                           "ends in .npy, .pfm, .exr or .tif",
                           path);
-    if (same_output(path, opts->stats))
-        return fail_usage(
-            "--depth: is the same file as --stats; name two files");
-    if (is_beside(opts) && !snow_image_format_has_depth(opts->output))
-        return fail_usage("--depth: is the same file as --output; name two "
-                          "files, or use one .exr for both");
-    return CONTINUE;
+    done = check_apart(path, opts->stats,
+                       "--depth: is the same file as --stats; name two files");
+    if (done != CONTINUE)
+        return done;
+    return check_apart(path, opts->output,
+                       snow_image_format_has_depth(opts->output)
+                           ? NULL
+                           : "--depth: is the same file as --output; name two "
+                             "files, or use one .exr for both");
 }
 
 /* These checks need no file, so they come before everything else. */
@@ -94,6 +98,8 @@ int check_picture(const options *opts) {
         return fail_usage("--output: standard output is a terminal; send it to "
                           "a pipe or a file");
     int done = check_depth(opts);
+    if (done == CONTINUE)
+        done = check_stats_apart(opts);
     return done == CONTINUE ? check_settings(opts) : done;
 }
 
@@ -115,10 +121,10 @@ int check_picture_paths(snow_context *context, const options *opts) {
         done = check_no_folder(opts->output);
     if (done == CONTINUE && opts->depth)
         done = check_no_folder(opts->depth);
-    if (done == CONTINUE && !is_stream(opts->output) &&
-        same_output(opts->output, opts->operands[0]))
-        return fail_usage("--output: is the input, which would be lost; name "
-                          "another file");
+    if (done == CONTINUE && !is_stream(opts->output))
+        done = check_apart(opts->output, opts->operands[0],
+                           "--output: is the input, which would be lost; name "
+                           "another file");
     if (done != CONTINUE)
         return done;
     snow_status status = snow_image_check(

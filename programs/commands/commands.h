@@ -84,6 +84,10 @@ snow_image_options picture_form(const options *opts);
  * Returns CONTINUE or an exit code. */
 int check_settings(const options *opts);
 
+/* Refuses --stats in the file of --output.  Returns CONTINUE or an exit code.
+ */
+int check_stats_apart(const options *opts);
+
 /* Refuses options of one picture that contradict each other, and outputs that
  * cannot be written, before anything is read.  Return CONTINUE or an exit
  * code. */

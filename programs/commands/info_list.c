@@ -57,19 +57,16 @@ static void free_entries(struct dirent **entries, int count) {
     free(entries);
 }
 
-static bool is_lost(const char *path) {
-    struct stat what;
-    return stat(path, &what) != 0;
-}
-
 /* False for a pipe or a device, which may keep who opens it waiting.  What
  * cannot be looked at is opened, which says why. */
 static bool path_in(const char *folder, const char *name, char out[PATH_MAX]) {
     size_t length = strlen(folder);
     bool slash = length && folder[length - 1] == '/';
+    struct stat what;
     return snprintf(out, PATH_MAX, "%s%s%s", folder, slash ? "" : "/", name) <
                PATH_MAX &&
-           (is_file(out) || is_folder(out) || is_lost(out));
+           (stat(out, &what) != 0 || S_ISREG(what.st_mode) ||
+            S_ISDIR(what.st_mode));
 }
 
 /* Whether files of the format may be the slices of one volume. */

@@ -9,6 +9,7 @@
 #include "picture/warnings.h"
 #include "run/interrupt.h"
 #include "run/log.h"
+#include "run/paths.h"
 #include "run/start.h"
 
 #include <errno.h>
@@ -46,6 +47,8 @@ int movie_check(const options *opts) {
     int done = check_depth_mode(opts);
     if (done == CONTINUE)
         done = paint_check(opts, true);
+    if (done == CONTINUE)
+        done = check_stats_apart(opts);
     return done == CONTINUE ? check_settings(opts) : done;
 }
 
@@ -182,8 +185,7 @@ static int claim_output(movie *s) {
 static int begin_parts(movie *s) {
     const frame_sink sink = {s, movie_frame_prepare, movie_frame_commit,
                              movie_frame_release};
-    struct stat what;
-    s->made_folder = s->place.format && stat(s->place.folder, &what) != 0;
+    s->made_folder = s->place.format && !is_there(s->place.folder);
     int done = place_make_folder(&s->place);
     if (done == CONTINUE)
         done = claim_output(s);

@@ -6,6 +6,7 @@
  * pipe could. */
 #define _XOPEN_SOURCE 700
 #include "movie/movie_encoder.h"
+#include "run/paths.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -82,7 +83,9 @@ bool encoder_is_there(void) {
         char path[PATH_MAX];
         snprintf(path, sizeof path, "%.*s/%s", length ? length : 1,
                  length ? folders : ".", PROGRAM);
-        if (access(path, X_OK) == 0)
+        if (access(path, X_OK) == 0 ||
+            (!means_absence(errno) &&
+             errno != EACCES)) /* to start it says so */
             return true;
         folders += length + (folders[length] == ':');
     }

@@ -14,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* Appends to the texts of the configuration; returns false if they are full. */
 static bool add_text(options *out, const char *text) {
@@ -208,6 +209,9 @@ int config_take_tree(options *out, const verb_row *verb, const json_t *tree) {
     return CONTINUE;
 }
 
+/* The recipe could not be read when its verb was wanted. */
+static bool verb_unknown;
+
 static int take_file(options *out, const verb_row *verb) {
     json_error_t error;
     int done = check_recipe(out->config);
@@ -216,6 +220,11 @@ static int take_file(options *out, const verb_row *verb) {
     json_t *tree = is_recipe_text(out->config)
                        ? json_loads(out->config, 0, &error)
                        : json_load_file(out->config, 0, &error);
+    if (!tree || verb_unknown) {
+        json_decref(tree);
+        say("%s: could be read once only; check the disk", out->config);
+        return SNOW_STATUS_BAD_INPUT;
+    }
     if (!is_recipe_text(out->config))
         config_paths_read(tree, out->config);
     fit_depth(out, verb, tree);
@@ -243,12 +252,19 @@ static const char *config_among(int argc, char **argv) {
     return NULL;
 }
 
-/* A file that cannot be read is refused later, with the reason. */
+/* A file that cannot be read is refused later, with the reason; also where it
+ * could not be read this time, so that its verb is not known.  A pipe is read
+ * once. */
 const verb_row *config_verb(int argc, char **argv) {
     const char *path = config_among(argc, argv);
     const verb_row *verb = NULL;
-    if (path && is_file(path)) {
+    struct stat what;
+    if (!path || is_recipe_text(path))
+        return verb_of(VERB_RENDER);
+    verb_unknown = stat(path, &what) != 0;
+    if (!verb_unknown && S_ISREG(what.st_mode)) {
         json_t *tree = json_load_file(path, 0, NULL);
+        verb_unknown = !tree;
         const char *name = json_string_value(json_object_get(tree, "verb"));
         verb = name ? verb_named(name) : NULL;
         json_decref(tree);

@@ -116,12 +116,17 @@ static void fill_recipe(const options *opts, const verb_row *verb,
 static int check_place(const options *opts) {
     static const char *const names[] = {"output", "depth", "stats"};
     const char *const paths[] = {opts->output, opts->depth, opts->stats};
-    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
-        if (same_output(opts->save_config, paths[i]))
-            return fail_usage(
-                "--save-config: is the same file as --%s; name two files",
-                names[i]);
-    int done = check_input_first(opts, &opts->save_config, 1);
+    int done = CONTINUE;
+    for (size_t i = 0; i < sizeof paths / sizeof *paths && done == CONTINUE;
+         i++) {
+        char fault[80];
+        snprintf(fault, sizeof fault,
+                 "--save-config: is the same file as --%s; name two files",
+                 names[i]);
+        done = check_apart(opts->save_config, paths[i], fault);
+    }
+    if (done == CONTINUE)
+        done = check_input_first(opts, &opts->save_config, 1);
     return done == CONTINUE
                ? check_stats_path(opts->save_config, opts->overwrite)
                : done;

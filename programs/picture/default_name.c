@@ -8,6 +8,7 @@
 #include "run/start.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <limits.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -65,7 +66,13 @@ int default_name(options *opts) {
         return fail_usage("%s: a pattern gives the picture no name; add "
                           "-o OUT.png",
                           opts->operands[0]);
+    errno = 0;
     default_stem(opts->operands[0], name);
+    if (errno && !means_absence(errno)) {
+        say("%s: cannot be opened: %s; check the name and the permissions",
+            opts->operands[0], strerror(errno));
+        return SNOW_STATUS_BAD_INPUT;
+    }
     snprintf(path, sizeof path, "%s.png", name);
     opts->output = path;
     opts->named = true;

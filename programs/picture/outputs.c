@@ -42,12 +42,20 @@ static void folder_of(const char *path, char *out, size_t size) {
     snprintf(out, size, "%.*s", length ? (int)length : 1, length ? path : ".");
 }
 
+/* Whether both paths name what is there; *lost: a look-up has failed. */
+static bool look_at(const char *a, const char *b, struct stat *of_a,
+                    struct stat *of_b, bool *lost) {
+    const bool both = stat(a, of_a) == 0 && stat(b, of_b) == 0;
+    *lost = *lost || (!both && !means_absence(errno));
+    return both;
+}
+
 /* Existing files are compared by device and inode, so that links and "./" do
  * not hide that they are equal.  For new files the folder and the name are
  * compared.  A device may take two streams. */
-static bool same_place(const char *a, const char *b) {
+static bool same_place(const char *a, const char *b, bool *lost) {
     struct stat of_a, of_b;
-    if (stat(a, &of_a) == 0 && stat(b, &of_b) == 0)
+    if (look_at(a, b, &of_a, &of_b, lost))
         return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev &&
                of_a.st_ino == of_b.st_ino;
     if (strcmp(a + folder_length(a), b + folder_length(b)) != 0)
@@ -55,12 +63,24 @@ static bool same_place(const char *a, const char *b) {
     char folder_a[PATH_MAX], folder_b[PATH_MAX];
     folder_of(a, folder_a, sizeof folder_a);
     folder_of(b, folder_b, sizeof folder_b);
-    return stat(folder_a, &of_a) == 0 && stat(folder_b, &of_b) == 0 &&
+    return look_at(folder_a, folder_b, &of_a, &of_b, lost) &&
            of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
 }
 
 bool same_output(const char *a, const char *b) {
-    return a && b && (strcmp(a, b) == 0 || same_place(a, b));
+    bool lost = false;
+    return a && b && (strcmp(a, b) == 0 || same_place(a, b, &lost));
+}
+
+int check_apart(const char *a, const char *b, const char *fault) {
+    bool lost = false;
+    errno = 0;
+    const bool same = a && b && (strcmp(a, b) == 0 || same_place(a, b, &lost));
+    if (lost)
+        return fail_output("%s: cannot be compared with %s: %s; check the "
+                           "permissions and the disk",
+                           a, b, strerror(errno));
+    return same && fault ? fail_usage("%s", fault) : CONTINUE;
 }
 
 static int fail_existing(const char *path) {
@@ -162,7 +182,10 @@ static int open_aside(const char *path, char *aside, size_t size) {
     struct stat old;
     mode_t mask = umask(0); /* the only way to read it */
     umask(mask);
-    fchmod(handle, stat(path, &old) == 0 ? old.st_mode & 0777 : 0666 & ~mask);
+    if (stat(path, &old) == 0)
+        fchmod(handle, old.st_mode & 0777);
+    else if (means_absence(errno))
+        fchmod(handle, 0666 & ~mask);
     return handle;
 }
 
@@ -205,6 +228,8 @@ int place_output(const char *aside, const char *path, bool overwrite) {
 static int write_aside(text_bytes text, const char *given, bool overwrite) {
     char resolved[PATH_MAX], aside[PATH_MAX];
     const char *path = realpath(given, resolved) ? resolved : given;
+    if (path == given && !means_absence(errno))
+        return errno;
     int file = open_aside(path, aside, sizeof aside);
     if (file < 0)
         return errno;
@@ -243,8 +268,11 @@ int write_text(const char *bytes, size_t count, const char *path,
         return fwrite(bytes, 1, count, stdout) == count
                    ? finish_stdout()
                    : fail_output("standard output: cannot be written");
+    errno = 0;
     int number = is_special(path) ? write_through(text, path)
-                                  : write_aside(text, path, overwrite);
+                 : errno && !means_absence(errno)
+                     ? errno
+                     : write_aside(text, path, overwrite);
     if (number == EEXIST)
         return fail_existing(path);
     return number == 0

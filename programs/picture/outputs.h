@@ -15,6 +15,10 @@ bool is_special(const char *path);
  * names none. */
 bool same_output(const char *a, const char *b);
 
+/* Refuses that with `fault`, if it is not NULL, and paths of which nobody can
+ * say it.  Returns CONTINUE or an exit code. */
+int check_apart(const char *a, const char *b, const char *fault);
+
 /* Refuses a folder where a file is to be written, also one that is named with
  * a slash but does not exist.  Returns CONTINUE or an exit code. */
 int check_no_folder(const char *path);

@@ -22,9 +22,13 @@ bool ends_with(const char *text, const char *end) {
     return length >= wanted && strcmp(text + length - wanted, end) == 0;
 }
 
+bool means_absence(int number) {
+    return number == ENOENT || number == ENOTDIR;
+}
+
 bool is_there(const char *path) {
     struct stat what;
-    return lstat(path, &what) == 0 || (errno != ENOENT && errno != ENOTDIR);
+    return lstat(path, &what) == 0 || !means_absence(errno);
 }
 
 void file_of_input(const char *path, char *out, size_t size) {

@@ -14,6 +14,9 @@ bool is_file(const char *path);
  * what cannot be looked at: to open it says why. */
 bool is_there(const char *path);
 
+/* Whether the error number of a look-up says that nothing is there. */
+bool means_absence(int number);
+
 /* The file of an input that may name a data set in it: run.h5 for run.h5:/rho,
  * if that is there; otherwise the path itself. */
 void file_of_input(const char *path, char *out, size_t size);

@@ -23,7 +23,9 @@ static bool find_beside(const char *name, char path[PATH_MAX]) {
     char *slash = strrchr(self, '/');
     int used =
         snprintf(path, PATH_MAX, "%.*s/%s", (int)(slash - self), self, name);
-    return used < PATH_MAX && access(path, X_OK) == 0;
+    return used < PATH_MAX &&
+           (access(path, X_OK) == 0 ||
+            (errno != ENOENT && errno != ENOTDIR && errno != EACCES));
 }
 
 /* What stops an exec may be the file itself, or that there is none. */

@@ -152,7 +152,12 @@ static int check_folder(const char *path) {
         snprintf(folder, sizeof folder, "%.*s",
                  slash > path ? (int)(slash - path) : 1, path);
     if (stat(folder, &what) != 0)
-        return CONTINUE;
+        return errno == ENOENT || errno == ENOTDIR
+                   ? CONTINUE
+                   : fail_usage(
+                         "--listen: %s: %s; name a file in a folder that "
+                         "you can read",
+                         folder, strerror(errno));
     bool foreign = what.st_uid != geteuid() && what.st_uid != 0;
     bool shared = what.st_mode & (S_IWGRP | S_IWOTH);
     if (!foreign && (!shared || what.st_mode & S_ISVTX))

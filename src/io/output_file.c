@@ -183,6 +183,8 @@ static snow_status open_target(snow_output_file *file) {
 static snow_status keep_paths(snow_output_file *file, const char *path) {
     char resolved[PATH_MAX];
     const char *target = realpath(path, resolved) ? resolved : path;
+    if (target == path && errno != ENOENT && errno != ENOTDIR)
+        return fail_by_number(file->context, path, "be written", errno);
     size_t given = strlen(path) + 1, real = strlen(target) + 1;
     file->path = snow_allocate(file->context, given + real);
     if (!file->path)

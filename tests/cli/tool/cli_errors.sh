@@ -252,6 +252,41 @@ if [ -e "$faulty" ]; then
         refused 3 "no more files" 'needs .*; close other files' \
             env SNOW_FAULT=files LD_PRELOAD="$faulty" "$TOOL" info p.h5
     fi
+
+    # Each look-up fails once: the command is refused, or does what it does
+    # without a fault; what it does is the last state.
+    look() { # WHAT STATUS COMMAND...
+        local what=$1 status=$2 number=0 odd=0 met=1
+        shift 2
+        run 0 "slices" "$TOOL" phantom shells --dims 8x8x8 -o p.nrrd -y
+        while [ "$met" = 1 ] && [ "$number" -lt 99 ]; do
+            rm -rf looked
+            mkdir -p looked/d.a1
+            cp bright.png looked/d.a1/1.png
+            cp bright.png looked/d.a1/2.png
+            cp p.nrrd many.json looked
+            ln -s p.nrrd looked/link.nrrd
+            number=$((number + 1))
+            (cd looked && SNOW_FAULT=look SNOW_LOOK=$number LD_PRELOAD=$faulty \
+                "$TOOL" "$@" -q) 2>"$ERR"
+            done=$?
+            met=$([ -e looked/met ]; echo $((1 - $?)))
+            rm -f looked/met
+            echo "$done $(cd looked && find . ! -name '.*.frames' -printf '%y%p ' |
+                sort)" >>"states_$what"
+        done
+        check "$what: status" [ "$done" = "$status" ]
+        check "$what: look-ups" [ "$number" -gt 2 ]
+        check "$what: nothing else" [ "$(sort -u "states_$what" |
+            grep -c '^0 ')" -le $((status == 0)) ]
+    }
+    run 0 "a slice" "$TOOL" slice p.nrrd -o bright.png -s 8x8
+    run 0 "a recipe" "$TOOL" turntable p.nrrd -o f_%d.png --frames 2 -s 16x16 \
+        --save-config many.json
+    look recipe 0 --config many.json
+    look link 0 convert p.nrrd -o link.nrrd -y
+    look same 2 p.nrrd -o q.png --stats ./q.png -s 16x16
+    look name 0 d.a1 -s 16x16
 else
     skipped "faults of the system" "their library is not built"
 fi
