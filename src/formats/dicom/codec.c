@@ -184,7 +184,8 @@ static snow_status check_whole(snow_context *context, const char *syntax,
 
 snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
                                     const dicom_image *image,
-                                    const unsigned char **bytes, size_t *size) {
+                                    const unsigned char **bytes, size_t *size,
+                                    int *bits) {
     packed_head head;
     bool known = is_jpeg2000(syntax) ? read_jpeg2000(bytes, size, &head)
                                      : read_jpeg(*bytes, *size, &head);
@@ -193,6 +194,7 @@ snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
                 head.samples == (uint32_t)image->samples &&
                 head.bits <= image->allocated &&
                 (head.bits > 8) == (image->allocated > 8);
+    *bits = same ? head.bits : 0;
     if (same && head.unlike)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,

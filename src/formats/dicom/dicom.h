@@ -372,10 +372,12 @@ snow_status snow_dicom_palette_read(dicom_reader *reader,
 
 /* Checks that the compressed bytes of a frame match the image, by their own
  * header, and that they are whole as far as codecs do not find it; narrows
- * them to the code stream.  Errors: SNOW_STATUS_BAD_INPUT. */
+ * them to the code stream, whose values have *bits.  Errors:
+ * SNOW_STATUS_BAD_INPUT. */
 snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
                                     const dicom_image *image,
-                                    const unsigned char **bytes, size_t *size);
+                                    const unsigned char **bytes, size_t *size,
+                                    int *bits);
 
 /* "its pixels cannot be decompressed". */
 snow_status snow_dicom_fail_unpack(snow_context *context, const char *syntax);

@@ -66,12 +66,28 @@ void describe(const gdcm_frame &frame, gdcm::ImageCodec &codec) {
     codec.SetNeedOverlayCleanup(false);
 }
 
+/* Of GDCM's three copies of libjpeg one reads these bits.  Another would print
+ * a line, and GDCM would go on with the right one. */
+struct jpeg_codec : gdcm::JPEGCodec {
+    void prepare(const gdcm_frame &frame) {
+        SetBitSample(frame.packed_bits);
+    }
+};
+
+void prepare(const gdcm_frame &frame, jpeg_codec &codec) {
+    codec.prepare(frame);
+}
+
+void prepare(const gdcm_frame &, gdcm::ImageCodec &) {
+}
+
 template <class Codec>
 bool decode(gdcm_frame &frame, const gdcm::DataElement &packed, char *out,
             size_t capacity) {
     Codec codec;
     gdcm::DataElement made;
     describe(frame, codec);
+    prepare(frame, codec);
     if (!codec.Decode(packed, made))
         return false;
     const gdcm::ByteValue *value = made.GetByteValue();
@@ -109,7 +125,7 @@ extern "C" bool snow_gdcm_unpack(gdcm_frame *frame, const void *packed,
         if (gdcm::JPEG2000Codec().CanDecode(syntax))
             return decode<gdcm::JPEG2000Codec>(*frame, element, to, capacity);
         return gdcm::JPEGCodec().CanDecode(syntax) &&
-               decode<gdcm::JPEGCodec>(*frame, element, to, capacity);
+               decode<jpeg_codec>(*frame, element, to, capacity);
     } catch (...) {
         return false;
     }

@@ -22,6 +22,7 @@ typedef struct gdcm_frame {
     int samples;                 /* words of a pixel */
     bool planes;                 /* one plane per sample, not interleaved */
     int allocated, stored, high; /* bits; the highest one stored, from 0 */
+    int packed_bits; /* of the packed values, as they say themselves */
     bool is_signed;
 } gdcm_frame;
 

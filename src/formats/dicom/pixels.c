@@ -223,6 +223,7 @@ static snow_status unpack(dicom_reader *reader, const dicom_image *image,
                           const unsigned char *bytes, size_t size, void *out,
                           dicom_words *words) {
     gdcm_codec *codec;
+    int bits;
     if (!is_known(reader->syntax))
         return snow_fail(
             reader->context, SNOW_STATUS_BAD_INPUT,
@@ -236,7 +237,7 @@ static snow_status unpack(dicom_reader *reader, const dicom_image *image,
             "is not supported; convert it to RGB, for example with gdcmconv",
             image->photometric, reader->syntax);
     SNOW_TRY(snow_dicom_check_packed(reader->context, reader->syntax, image,
-                                     &bytes, &size));
+                                     &bytes, &size, &bits));
     SNOW_TRY(find_codec(reader->context, &codec));
     gdcm_frame frame = {.syntax = reader->syntax,
                         .photometric = image->photometric,
@@ -247,6 +248,7 @@ static snow_status unpack(dicom_reader *reader, const dicom_image *image,
                         .allocated = image->allocated,
                         .stored = image->stored,
                         .high = image->high,
+                        .packed_bits = bits,
                         .is_signed = image->is_signed};
     if (!codec(&frame, bytes, size, out, (size_t)snow_dicom_frame_bytes(image)))
         return snow_dicom_fail_unpack(reader->context, reader->syntax);
