@@ -22,6 +22,10 @@
 /* Bytes that may be missing, except of voxels. */
 #define BEHIND_MOST ((size_t)1 << 20)
 
+/* What libhdf5 takes for its tables and a small file, with room to spare. */
+#define ROOM_BYTES ((size_t)2 << 20)
+#define ROOM_PARTS 8
+
 struct hdf5_file {
     snow_context *context;
     snow_seekable *bytes;
@@ -172,8 +176,26 @@ static snow_status open_file(hdf5_file *file) {
                : snow_hdf5_fail(file->context, "cannot be opened as HDF5");
 }
 
+/* libhdf5 1.10 crashes where it gets no memory for its tables, and where it
+ * gets none for a part of a file it may go on without. */
+static snow_status check_memory(snow_context *context) {
+    void *parts[ROOM_PARTS];
+    int made = 0;
+    while (made < ROOM_PARTS &&
+           (parts[made] = snow_allocate(context, ROOM_BYTES / ROOM_PARTS)))
+        made++;
+    const bool enough = made == ROOM_PARTS;
+    while (made)
+        snow_release(context, parts[--made]);
+    return enough ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+}
+
 snow_status snow_hdf5_open(snow_source *source, hdf5_file **out) {
     snow_context *context = snow_source_context(source);
+    SNOW_TRY(check_memory(context));
+    if (H5open() < 0)
+        return snow_fail(context, SNOW_STATUS_NO_MEMORY,
+                         "libhdf5 cannot begin; close other programs");
     hdf5_file *file = snow_allocate_clear(context, sizeof *file);
     if (!file)
         return SNOW_STATUS_NO_MEMORY;

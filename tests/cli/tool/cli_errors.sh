@@ -219,6 +219,14 @@ for way in info "render -o jpeg.png"; do
     check "no library says more" [ "$(grep -vc '^snowglass: note: ' "$ERR")" = 1 ]
 done
 
+cp "$HERE/../fuzz/corpus/hdf5/latest" groups.h5
+printf '\0\0\0\0' | dd of=groups.h5 bs=1 seek=459 conv=notrunc 2>/dev/null
+refused 3 "damaged groups of HDF5" "^snowglass: groups.h5: " "$TOOL" info groups.h5
+if "$TOOL" info "$HERE/../fuzz/corpus/dicom/jpeg_of_12_bits" >"$OUT" 2>"$ERR"; then
+    check "12 bits need no word of a library" \
+        [ "$(grep -vc '^snowglass: note: ' "$ERR")" = 0 ]
+fi
+
 # --- what the system lacks ----------------------------------------------------
 
 faulty=$(dirname "$TOOL")/tests/libfaulty_calls.so
@@ -251,6 +259,18 @@ if [ -e "$faulty" ]; then
     then
         refused 3 "no more files" 'needs .*; close other files' \
             env SNOW_FAULT=files LD_PRELOAD="$faulty" "$TOOL" info p.h5
+        # From too little memory to start on, up to enough to read the file.
+        limited() {
+            local kib=24000 done=1 signals=0
+            until [ "$done" = 0 ] || [ "$kib" -gt 200000 ]; do
+                (ulimit -v $kib && exec "$TOOL" info -q p.h5) >/dev/null 2>&1
+                done=$?
+                signals=$((signals + (done > 127 && done != 127)))
+                kib=$((kib + 128))
+            done
+            [ "$done" = 0 ] && [ "$signals" = 0 ]
+        }
+        check "libhdf5 has memory, or is not used" limited
     fi
 
     # Each look-up fails once: the command is refused, or does what it does
