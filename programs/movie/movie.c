@@ -175,9 +175,8 @@ static int claim_output(movie *s) {
                            "it, or choose another name",
                            s->place.output);
     return number == 0 ? CONTINUE
-                       : fail_output("%s: %s; choose a place that can be "
-                                     "written",
-                                     s->place.record, strerror(number));
+                       : fail_output("%s: %s; %s", s->place.record,
+                                     strerror(number), place_remedy(number));
 }
 
 /* Prepares the frames' folder, the record, ffmpeg and the queue; removes

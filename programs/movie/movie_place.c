@@ -212,8 +212,8 @@ void place_sweep(const movie_place *place) {
 int place_make_folder(const movie_place *place) {
     if (!place->format || mkdir(place->folder, 0777) == 0 || errno == EEXIST)
         return CONTINUE;
-    return fail_output("%s: %s; choose a place that can be written",
-                       place->folder, strerror(errno));
+    return fail_output("%s: %s; %s", place->folder, strerror(errno),
+                       place_remedy(errno));
 }
 
 /* Files of others stay, and then the folder stays too. */

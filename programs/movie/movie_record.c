@@ -332,12 +332,12 @@ static int compare(const options *opts, const shot_list *list,
 
 /* Opens and locks an existing record; -1 with CONTINUE: there is none. */
 static int open_file(const movie_place *place, frame_record *out) {
-    out->file = open(place->record, O_RDWR | O_APPEND | O_CLOEXEC);
+    out->file = open_bytes(place->record, O_RDWR | O_APPEND);
     if (out->file < 0)
         return errno == ENOENT || errno == ENOTDIR
                    ? CONTINUE
-                   : fail_output("%s: %s; choose another name", place->record,
-                                 strerror(errno));
+                   : fail_output("%s: %s; %s", place->record, strerror(errno),
+                                 place_remedy(errno));
     if (is_locked_by_others(out->file))
         return fail_output("%s: another run is making these frames; wait for "
                            "it, or choose another name",
@@ -403,8 +403,7 @@ int record_claim(frame_record *record, const movie_place *place) {
     if (record->file >= 0)
         return 0;
     record->file =
-        open(place->record, O_RDWR | O_APPEND | O_CREAT | O_EXCL | O_CLOEXEC,
-             S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH);
+        open_bytes(place->record, O_RDWR | O_APPEND | O_CREAT | O_EXCL);
     if (record->file < 0)
         return errno;
     return is_locked_by_others(record->file) ? EAGAIN : 0;

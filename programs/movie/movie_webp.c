@@ -58,7 +58,7 @@ static int read_bytes(int file, unsigned char *bytes, size_t size) {
  * free(). */
 static int read_file(const char *path, unsigned char **out, size_t *size) {
     struct stat about;
-    int number = 0, file = open(path, O_RDONLY | O_CLOEXEC);
+    int number = 0, file = open_bytes(path, O_RDONLY);
     if (file < 0)
         return errno;
     if (fstat(file, &about) != 0)
@@ -135,8 +135,7 @@ static int write_frames(int out, const webp_job *job, const movie_place *place,
 int webp_join(const webp_job *job, const movie_place *place) {
     unsigned char size[4];
     uint64_t total = 12 + 18 + 14;
-    int out =
-        open(place->movie, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    int out = open_bytes(place->movie, O_WRONLY | O_CREAT | O_TRUNC);
     if (out < 0)
         return errno;
     int number = write_header(out, job);

@@ -127,6 +127,27 @@ int check_stats_path(const char *path, bool overwrite) {
     return CONTINUE;
 }
 
+int open_bytes(const char *path, int how) {
+    int file = -1;
+    do
+        file = open(path, how | O_CLOEXEC, 0666);
+    while (file < 0 && errno == EINTR);
+    return file;
+}
+
+const char *place_remedy(int number) {
+    switch (number) {
+    case EMFILE:
+    case ENFILE:
+        return "close other files, or allow more of them (ulimit -n)";
+    case ENOSPC:
+    case EDQUOT:
+        return "make space, or choose another place";
+    default:
+        return "choose a place that can be written";
+    }
+}
+
 int write_bytes(int file, const void *bytes, size_t count) {
     const char *at = bytes;
     while (count) {
@@ -212,7 +233,7 @@ static void sync_folder(const char *path) {
 }
 
 int place_output(const char *aside, const char *path, bool overwrite) {
-    int file = open(aside, O_RDWR | O_CLOEXEC);
+    int file = open_bytes(aside, O_RDWR);
     if (file < 0)
         return errno;
     int number = sync_bytes(file);
@@ -250,10 +271,7 @@ static int write_aside(text_bytes text, const char *given, bool overwrite) {
 
 /* For pipes and devices, which a rename would replace by a regular file. */
 static int write_through(text_bytes text, const char *path) {
-    int file = -1;
-    do
-        file = open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
-    while (file < 0 && errno == EINTR);
+    int file = open_bytes(path, O_WRONLY | O_NOCTTY);
     if (file < 0)
         return errno;
     int number = write_bytes(file, text.bytes, text.count);
@@ -275,10 +293,9 @@ int write_text(const char *bytes, size_t count, const char *path,
                      : write_aside(text, path, overwrite);
     if (number == EEXIST)
         return fail_existing(path);
-    return number == 0
-               ? SNOW_STATUS_OK
-               : fail_output("%s: %s; choose a place that can be written", path,
-                             strerror(number));
+    return number == 0 ? SNOW_STATUS_OK
+                       : fail_output("%s: %s; %s", path, strerror(number),
+                                     place_remedy(number));
 }
 
 int write_json(json_t *object, const char *path, bool overwrite) {

@@ -40,6 +40,11 @@ int write_json(json_t *object, const char *path, bool overwrite);
 int write_text(const char *bytes, size_t count, const char *path,
                bool overwrite);
 
+/* Opens a file, which nobody else has open after an exec; a signal does no
+ * harm. Returns -1 with errno where that fails, and what to do about it. */
+int open_bytes(const char *path, int how);
+const char *place_remedy(int number);
+
 /* Writes bytes to an open file, or in the place of those at `at`, or makes what
  * was written survive a power failure where that is possible.  A signal does no
  * harm.  Returns 0 or an error number. */

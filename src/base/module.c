@@ -165,7 +165,11 @@ static bool is_whole(const module_file *file) {
     int descriptor = open(file->path, O_RDONLY | O_CLOEXEC);
     if (descriptor < 0)
         return true; /* dlopen reports the reason */
-    bool read_all = read(descriptor, &head, sizeof head) == sizeof head;
+    ssize_t got = -1;
+    do
+        got = read(descriptor, &head, sizeof head);
+    while (got < 0 && errno == EINTR);
+    bool read_all = got == sizeof head;
     close(descriptor);
     return read_all && memcmp(head.e_ident, ELFMAG, SELFMAG) == 0 &&
            head.e_shoff < INT32_MAX &&

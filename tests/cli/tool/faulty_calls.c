@@ -1,12 +1,12 @@
 /* tests/cli/tool/faulty_calls.c - loaded into the tool before all else
  * (LD_PRELOAD), makes calls of the system fail, as SNOW_FAULT says:
  *
- *   interrupt   a signal comes into each second write, sync and close
- *   join        the head of a movie cannot be written, and then no folder
- * listed threads     there are no threads; processes for `spawn`; files for
- * `files` look        the look-up of a path that has the number SNOW_LOOK
- * fails; then there is a file `met`
- */
+ *   interrupt   a signal comes into each second open, write, sync and close
+ *   join        a movie's head cannot be written, and then no folder listed
+ *   threads     there are no threads
+ *   spawn       there are no processes
+ *   files       there are no more files
+ *   look        look-up number SNOW_LOOK fails, and leaves a file `met` */
 #define _GNU_SOURCE /* RTLD_NEXT, syscall, stat64 */
 #include <dirent.h>
 #include <dlfcn.h>
@@ -62,13 +62,18 @@ LOOK(int, fstatat64, -1,
      (int at, const char *path, struct stat64 *out, int how), at, path, out,
      how)
 LOOK(int, access, -1, (const char *path, int mode), path, mode)
-LOOK(int, open64, -1, (const char *path, int how, ...), path, how, 0666)
 LOOK(int, __open64_2, -1, (const char *path, int how), path, how)
 LOOK(int, openat64, -1, (int at, const char *path, int how, ...), at, path, how,
      0666)
 LOOK(char *, realpath, NULL, (const char *path, char *out), path, out)
 LOOK(char *, __realpath_chk, NULL, (const char *path, char *out, size_t room),
      path, out, room)
+
+SEEN int open64(const char *path, int how, ...) {
+    int (*real)(const char *, int, ...) = NULL;
+    *(void **)&real = dlsym(RTLD_NEXT, "open64");
+    return is_lost(path) || is_interrupted() ? -1 : real(path, how, 0666);
+}
 
 static bool is_broken; /* by the fault `join` */
 
