@@ -10,6 +10,7 @@
 #include "commands/commands.h"
 #include "picture/outputs.h"
 #include "run/log.h"
+#include "run/paths.h"
 
 #include <dirent.h>
 #include <errno.h>

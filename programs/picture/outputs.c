@@ -135,19 +135,6 @@ int open_bytes(const char *path, int how) {
     return file;
 }
 
-const char *place_remedy(int number) {
-    switch (number) {
-    case EMFILE:
-    case ENFILE:
-        return "close other files, or allow more of them (ulimit -n)";
-    case ENOSPC:
-    case EDQUOT:
-        return "make space, or choose another place";
-    default:
-        return "choose a place that can be written";
-    }
-}
-
 int write_bytes(int file, const void *bytes, size_t count) {
     const char *at = bytes;
     while (count) {

@@ -31,6 +31,19 @@ bool is_there(const char *path) {
     return lstat(path, &what) == 0 || !means_absence(errno);
 }
 
+const char *place_remedy(int number) {
+    switch (number) {
+    case EMFILE:
+    case ENFILE:
+        return "close other files, or allow more of them (ulimit -n)";
+    case ENOSPC:
+    case EDQUOT:
+        return "make space, or choose another place";
+    default:
+        return "choose a place that can be written";
+    }
+}
+
 void file_of_input(const char *path, char *out, size_t size) {
     const char *set = NULL;
     for (const char *at = path; (at = strstr(at, ":/")); at++)

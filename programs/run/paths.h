@@ -17,6 +17,9 @@ bool is_there(const char *path);
 /* Whether the error number of a look-up says that nothing is there. */
 bool means_absence(int number);
 
+/* What to do about an error number of a place for outputs. */
+const char *place_remedy(int number);
+
 /* The file of an input that may name a data set in it: run.h5 for run.h5:/rho,
  * if that is there; otherwise the path itself. */
 void file_of_input(const char *path, char *out, size_t size);

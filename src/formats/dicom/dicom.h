@@ -333,6 +333,13 @@ snow_status snow_dicom_check_sizes(snow_context *context,
 
 /* --- pixels.c ------------------------------------------------------------- */
 
+/* The transfer syntax of deflated files. */
+#define DICOM_DEFLATED "1.2.840.10008.1.2.1.99"
+
+/* Refuses pixels in a transfer syntax that is not known: SNOW_STATUS_BAD_INPUT.
+ */
+snow_status snow_dicom_check_syntax(const dicom_reader *r);
+
 /* The layout of a frame's words; a codec may differ from the header. */
 typedef struct dicom_words {
     int size;         /* bytes of a word: 1, 2 or 4 */

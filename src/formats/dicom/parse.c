@@ -30,8 +30,6 @@
 #define TAG_FRAME_GROUPS 0x52009230u
 #define TAG_SHARED_GROUPS 0x52009229u
 
-#define DEFLATED "1.2.840.10008.1.2.1.99"
-#define IMPLICIT "1.2.840.10008.1.2"
 #define BIG_ENDIAN_SYNTAX "1.2.840.10008.1.2.2"
 
 /* The most nested sequences; real files have three or four. */
@@ -332,23 +330,6 @@ static snow_status check_after(walk *w, coding how) {
                      h.tag >> 16, h.tag & 0xffff);
 }
 
-/* Pixels in a syntax that nobody knows would be read as if they were plain: a
- * private one of GE has little-endian elements but big-endian pixels. */
-static snow_status check_syntax(const dicom_reader *r) {
-    const size_t common = sizeof IMPLICIT - 1;
-    const char *end = r->syntax + common;
-    if (!*r->syntax || !strcmp(r->syntax, DEFLATED) ||
-        (!memcmp(r->syntax, IMPLICIT, common) &&
-         (!*end || (*end == '.' && end[2] == (end[1] == '4' ? '.' : 0) &&
-                    end[1] && strchr("1245", end[1])))))
-        return SNOW_STATUS_OK;
-    return snow_fail(r->context, SNOW_STATUS_BAD_INPUT,
-                     "its pixels are stored in an unknown way (transfer syntax "
-                     "%.64s), which is not supported; decompress it, for "
-                     "example with gdcmconv --raw",
-                     r->syntax);
-}
-
 /* Walks elements up to `end`, or a delimiter if that is UINT64_MAX.  The file
  * itself ends with its last byte; blanks after the last element are dropped. */
 static snow_status walk_set(walk *w, coding how, uint64_t end, int depth) {
@@ -361,7 +342,7 @@ static snow_status walk_set(walk *w, coding how, uint64_t end, int depth) {
         if (h.tag == TAG_ITEM_END && depth)
             return SNOW_STATUS_OK;
         if (depth == 0 && h.tag == DICOM_TAG_PIXELS)
-            SNOW_TRY(check_syntax(w->reader));
+            SNOW_TRY(snow_dicom_check_syntax(w->reader));
         if (depth == 0 && h.tag == DICOM_TAG_PIXELS && w->stops) {
             w->reader->has_pixels = true;
             w->reader->packed = h.length == UNDEFINED;
@@ -432,7 +413,7 @@ static snow_status walk_file(walk *w) {
     const unsigned char *at = look(w, &have);
     w->at = have >= 4 && !memcmp(at, "DICM", 4) ? PREAMBLE + 4 : 0;
     SNOW_TRY(walk_meta(w));
-    if (!strcmp(r->syntax, DEFLATED))
+    if (!strcmp(r->syntax, DICOM_DEFLATED))
         SNOW_TRY(begin_inflating(w));
     at = look(w, &have);
     if (have < 8)

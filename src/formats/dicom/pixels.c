@@ -12,6 +12,7 @@
 #include <string.h>
 
 #define RUN_LENGTHS "1.2.840.10008.1.2.5"
+#define IMPLICIT "1.2.840.10008.1.2" /* all known ones begin so */
 
 uint64_t snow_dicom_frame_bytes(const dicom_image *image) {
     uint64_t bits = image->allocated == 1 ? 8 : (uint64_t)image->allocated;
@@ -186,6 +187,23 @@ static snow_status gather(dicom_reader *reader, const dicom_element *pixels,
         return SNOW_STATUS_OK;
     snow_release(reader->context, bytes);
     return snow_dicom_fail_unpack(reader->context, reader->syntax);
+}
+
+/* Pixels in a syntax that nobody knows would be read as if they were plain: a
+ * private one of GE has little-endian elements but big-endian pixels. */
+snow_status snow_dicom_check_syntax(const dicom_reader *r) {
+    const size_t common = sizeof IMPLICIT - 1;
+    const char *end = r->syntax + common;
+    if (!*r->syntax || !strcmp(r->syntax, DICOM_DEFLATED) ||
+        (!memcmp(r->syntax, IMPLICIT, common) &&
+         (!*end || (*end == '.' && end[2] == (end[1] == '4' ? '.' : 0) &&
+                    end[1] && strchr("1245", end[1])))))
+        return SNOW_STATUS_OK;
+    return snow_fail(r->context, SNOW_STATUS_BAD_INPUT,
+                     "its pixels are stored in an unknown way (transfer syntax "
+                     "%.64s), which is not supported; decompress it, for "
+                     "example with gdcmconv --raw",
+                     r->syntax);
 }
 
 #if SNOW_HAVE_GDCM
