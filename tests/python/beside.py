@@ -25,7 +25,7 @@ if "PYTHONPATH" in os.environ:
         os.path.abspath, os.environ["PYTHONPATH"].split(os.pathsep)))
 TOOL = os.path.abspath(os.environ.get("SNOWGLASS", "snowglass"))
 TIER = os.environ.get("SNOW_TIER", "short")
-PICTURES = {"short": 60, "long": 300, "release": 10000}[TIER]
+PICTURES = {"short": 60, "long": 120, "release": 10000}[TIER]
 # A sanitizer keeps what is freed, and takes its time.
 plain = unittest.skipIf(os.environ.get("SNOW_SANITIZED"), "of plain builds")
 # Under valgrind a row of a picture takes longer than these wait.

@@ -77,6 +77,7 @@ run 0 "from standard input" bash -c \
 same_file "is the same" c.npy h.npy
 run 7 "a mask of no voxel" "$TOOL" render v.npy -o i.png --mask m.npy --labels 9
 says 'm.npy: no voxel is left inside this mask, whose values are 0 to 3'
+check "is told once" test "$(grep -c 'no voxel is left' "$ERR")" = 1
 run 0 "a mask that is flipped is used as it is" \
     render place.nrrd -o f.png --mask flip.nrrd
 
@@ -101,6 +102,8 @@ done
 check "is the same" test "$(sort -u looks | wc -l)" = 1
 run 7 "planes that leave nothing" "$TOOL" render v.npy -o p.png --clip 1,0,0,-1
 says 'clip: no voxel is left'
+run 0 "planes that leave some" "$TOOL" render v.npy -y -o p.png --clip 1,0,0,15
+not_said 'no voxel'
 
 # --- figures and movies -------------------------------------------------------
 check "info counts what is inside" test \
