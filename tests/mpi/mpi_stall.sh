@@ -2,7 +2,7 @@
 # mpi_stall.sh - one rank of four is stopped: the job ends when its timeout is
 # over, with one message that names the rank, and leaves nothing unfinished. A
 # rank that goes on in time is waited for.  One that is killed, or told to end,
-# ends the job at once.
+# ends the job at once.  Most of that is waiting, so that four jobs run at a time.
 . "$(dirname "$0")/../support/mpi.sh"
 need_proc
 LIMIT=540
@@ -46,13 +46,13 @@ stalled() {
         fail "$NAME: a frame is whole"
 }
 
-movie="turntable phantom:head --dims 40x40x40 -s 64x64 --frames 100000 -q -y"
-for RANK in 2 0; do # 0 writes
+# Longer than any signal takes to come; each frame is prepared before the first.
+movie="turntable phantom:head --dims 40x40x40 -s 64x64 --frames 5000 -q -y"
+a_rank_of_a_movie() { # 0 writes
     NAME="rank $RANK of a movie"
-    rm -f f_*
     # shellcheck disable=SC2086
     stalled '[ -e f_000003.png ]' "$MPI_TOOL" $movie -o f_%06d.png
-done
+}
 
 # line_comes SECONDS: waits for the line that says how long the others wait. It comes
 # after half of the timeout, later where the machine itself stands still.
@@ -68,9 +68,9 @@ line_comes() {
 }
 
 # In time, and with all the time there is.
-for timeout in 24 0; do
+goes_on() {
+    local timeout=$1
     NAME="a rank that goes on, timeout $timeout" RANK=2
-    rm -f f_*
     begin STOP '[ -e f_000003.png ]' "$MPI_TOOL" turntable phantom:head \
         --dims 40x40x40 -s 64x64 --frames 400 -y -o f_%06d.png \
         --timeout $timeout
@@ -84,7 +84,8 @@ for timeout in 24 0; do
     wait "$job"
     check "$NAME: the job succeeds" [ $? -eq 0 ]
     check "$NAME: its frames are there" [ -e f_000399.png ]
-done
+}
+
 # ended SIGNAL WHEN COMMAND...: how long the others go on.
 ended() {
     local signal=$1 started code
@@ -106,19 +107,57 @@ ended() {
     check "$NAME: nothing half written" \
         [ -z "$(find . -name '*snow-*' -o -name out.png)" ]
 }
-rm -f f_*
-for signal in KILL TERM; do
-    RANK=2 ended $signal 'sleep 1' "$MPI_TOOL" phantom:head --dims 600x600x600 \
-        -o out.png -q
+
+# Whether the rank has computed for so long, in hundredths of a second, which MPI's
+# own beginning does not.
+computes() {
+    local process
+    process=$(process_of_rank "$RANK")
+    [ -n "$process" ] &&
+        [ "$(awk '{ print $14 + $15 }' "/proc/$process/stat")" -ge "$1" ]
+}
+
+ended_at_once() {
+    local frame signal
+    for signal in KILL TERM; do
+        RANK=2 ended $signal 'computes 70' "$MPI_TOOL" phantom:head \
+            --dims 600x600x600 -o out.png -q
+    done
+    # shellcheck disable=SC2086
+    RANK=0 ended TERM '[ -e g_000003.png ]' "$MPI_TOOL" $movie -o g_%06d.png
+    # shellcheck disable=SC2086
+    RANK=2 ended KILL '[ -e f_000003.png ]' "$MPI_TOOL" $movie -o f_%06d.png
+    for frame in f_*.png g_*.png; do
+        "$TOOL" compare "$frame" "$frame" >/dev/null 2>&1 ||
+            fail "$frame is whole"
+    done
+}
+
+# aside NAME COMMAND...: in a folder of its own, beside what follows.
+asides=()
+aside() {
+    local name=$1
+    shift
+    mkdir "$name"
+    (
+        WORK=$WORK/$name
+        OUT=$WORK/.stdout ERR=$WORK/.stderr
+        cd "$WORK" || exit 1
+        "$@"
+        exit "$FAILED"
+    ) >"$name/said" 2>&1 &
+    asides+=("$! $name")
+}
+RANK=2 aside stopped a_rank_of_a_movie
+RANK=0 aside stopped-0 a_rank_of_a_movie
+aside timeout goes_on 24
+aside no-timeout goes_on 0
+for each in "${asides[@]}"; do
+    wait "${each% *}"
+    FAILED=$((FAILED + $?))
+    cat "${each#* }/said"
 done
-# shellcheck disable=SC2086
-RANK=0 ended TERM '[ -e g_000003.png ]' "$MPI_TOOL" $movie -o g_%06d.png
-# shellcheck disable=SC2086
-RANK=2 ended KILL '[ -e f_000003.png ]' "$MPI_TOOL" $movie -o f_%06d.png
-for frame in f_*.png g_*.png; do
-    "$TOOL" compare "$frame" "$frame" >/dev/null 2>&1 ||
-        fail "$frame is whole"
-done
+ended_at_once
 
 run 2 "a timeout below 0" launch 2 "$MPI_TOOL" phantom:head --timeout -1 \
     -o out.png
