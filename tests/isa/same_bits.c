@@ -1,7 +1,7 @@
 /* tests/isa/same_bits.c - shear-warp's pictures have the same bits with every
  * instruction set that this machine, or the one that it emulates, runs, but for
  * what the warp rounds (docs/fast.md).  It needs the core alone and no file, so
- * that it runs where next to nothing is installed: scripts/emulate_isa. */
+ * that it runs where next to nothing is installed: tests/isa/emulated.sh. */
 #include <math.h>
 #include <snowglass/snowglass.h>
 #include <stdio.h>
@@ -9,7 +9,9 @@
 #include <string.h>
 
 #define CHECK(call) check((call), context, #call)
-#define SIDE 60
+#define SIDE 44
+#define WIDTH 102
+#define HEIGHT 75
 
 static void check(snow_status status, snow_context *context, const char *call) {
     if (status == SNOW_STATUS_OK)
@@ -88,8 +90,8 @@ static snow_image *draw(snow_context *context, snow_volume *volume,
     settings.threads = 1; /* an emulator has few */
     snow_view_init(&view);
     CHECK(snow_view_from_name(context, "+z", &view));
-    view.width = 150;
-    view.height = 110;
+    view.width = WIDTH;
+    view.height = HEIGHT;
     view.fov = s->fov;
     view.azimuth = s->azimuth;
     view.elevation = s->elevation;
@@ -103,7 +105,7 @@ static snow_image *draw(snow_context *context, snow_volume *volume,
 /* The largest difference of two pictures that show something. */
 static double difference(snow_image *a, snow_image *b) {
     int channels = snow_image_channels(a);
-    size_t count = (size_t)150 * 110 * (size_t)channels;
+    size_t count = (size_t)WIDTH * HEIGHT * (size_t)channels;
     const float *left = snow_image_pixels(a), *right = snow_image_pixels(b);
     double most = 0, shown = 0;
     for (size_t n = 0; n < count; n++) {

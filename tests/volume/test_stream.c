@@ -338,12 +338,12 @@ static const struct sweep {
     const snow_look *look;
     bool holes; /* of floats alone */
 } sweeps[] = {
-    {draw_over, 13, {1, 5, 35, 50, 70, 1000}, NULL, false},
-    {draw_modes, 13, {4, 35}, NULL, false},
+    {draw_over, 19, {1, 5, 35, 50, 70, 1000}, NULL, false},
+    {draw_modes, 19, {4, 35}, NULL, false},
     {draw_modes, 7, {20, 200}, NULL, true},
-    {draw_by_footprints, 13, {30, 120}, NULL, false},
-    {draw_wide_pixels, 17, {40}, NULL, false},
-    {draw_depths, 17, {60, 140}, NULL, false},
+    {draw_by_footprints, 19, {30, 120}, NULL, false},
+    {draw_wide_pixels, 19, {40}, NULL, false},
+    {draw_depths, 19, {60, 140}, NULL, false},
     {draw_gradients, 19, {3, 43, 123}, &fades, false},
 };
 
@@ -659,10 +659,10 @@ static void any_allocation_may_fail(void **state) {
         snow_mode mode;
         bool depth;
         int step, least; /* and in the release tier */
-    } cases[] = {{SNOW_MODE_OVER, false, 43, 1},
-                 {SNOW_MODE_OVER, true, 61, 37},
-                 {SNOW_MODE_SUM, false, 43, 3},
-                 {SNOW_MODE_ISO, true, 47, 3}};
+    } cases[] = {{SNOW_MODE_OVER, false, 89, 1},
+                 {SNOW_MODE_OVER, true, 113, 37},
+                 {SNOW_MODE_SUM, false, 83, 3},
+                 {SNOW_MODE_ISO, true, 97, 3}};
     support_files *place = *state;
     char path[128];
     strcpy(path, write_head(place, SNOW_TYPE_UINT8, "head.nrrd"));
