@@ -550,14 +550,14 @@ class Calls(InFolder):
         with self.assertRaises(Enough):
             volume.render(size=2048, method="raycast", progress=enough)
         seen = []
-        volume.render(size=300, method="raycast", progress=lambda *each:
+        volume.render(size=100, method="raycast", progress=lambda *each:
                       seen.append(each))
         self.assertEqual(seen[-1], ("render", 1.0))
         self.assertEqual(sorted(each[1] for each in seen if
                                 each[0] == "render"),
                          [each[1] for each in seen if each[0] == "render"])
         with self.assertRaisesRegex(RuntimeError, "in use"):
-            volume.render(size=300, method="raycast",
+            volume.render(size=100, method="raycast",
                           progress=lambda *_: volume.render())
         volume.render(size=16)
 
