@@ -89,13 +89,13 @@ frames_as_one "a movie" 2 movie step%d.npy
 
 # Ranks share the reading for the look of all steps where there are more of them
 # than steps, or a step is too large for one: the look is that of one process.
-"$TOOL" phantom engine --dims 240x240x251 -q -o large0.npy
-"$TOOL" phantom head --dims 240x240x251 -q -o large1.npy
+"$TOOL" phantom engine --dims 160x160x171 -q -o large0.npy
+"$TOOL" phantom head --dims 160x160x171 -q -o large1.npy
 for way in "step0.npy step1.npy --crop :,3:30,5:31" "large0.npy large1.npy"; do
     # shellcheck disable=SC2086
     run 0 "a movie alone, $way" "$TOOL" movie $way -s 64x64 -y -o step_%d.npy
     look=$(grep -o 'grey .*histogram)' "$ERR")
-    [ "${way%%0*}" = large ] && way+=" --memory 13600K"
+    [ "${way%%0*}" = large ] && way+=" --memory 4000K"
     # shellcheck disable=SC2086
     run 0 "by 12" launch 12 "$MPI_TOOL" movie $way -s 64x64 -y \
         -o steps_%d.npy
@@ -106,7 +106,7 @@ for way in "step0.npy step1.npy --crop :,3:30,5:31" "large0.npy large1.npy"; do
     done
 done
 refused 5 "a step too large for one" 'the range of all steps needs' \
-    "$TOOL" movie large0.npy large1.npy --memory 13600K -o x_%d.png
+    "$TOOL" movie large0.npy large1.npy --memory 4000K -o x_%d.png
 
 # --- masks --------------------------------------------------------------------
 
@@ -149,11 +149,11 @@ check "4 ranks take less each" [ "$(peak many.json)" -le \
 rm large.nrrd
 
 # shellcheck disable=SC2054
-turn=(turntable slab.nrrd --frames 4 -s 64x64 -y -q --background black)
+turn=(turntable slab.nrrd --frames 2 -s 64x64 -y -q --background black)
 run 0 "a turn in memory" launch 3 "$MPI_TOOL" "${turn[@]}" -o one_%d.png
 run 0 "a turn in its file" launch 3 "$MPI_TOOL" "${turn[@]}" -o many_%d.png \
     --memory 6M
-for frame in 0 1 2 3; do
+for frame in 0 1; do
     check "frame $frame" cmp -s one_$frame.png many_$frame.png
 done
 

@@ -17,7 +17,6 @@ TOLERANCE = "1/255"
 # have all.  All of these two, the second of which turns quaternions into directions,
 # but in the short tier and under sanitizers.
 FEW = oracle.SHORT or "SNOW_SANITIZED" in os.environ
-ALL = os.environ.get("SNOW_TIER") == "release"
 WHOLE = ("nrrd RAS", "nifti qform")
 
 
@@ -169,7 +168,7 @@ def sweep(kind, matrix):
     name, data = FORMATS[0][1](voxels, matrix)
     oracle.tool("render", oracle.put(name, data), "-y", "-o", "a.png", *LOOK)
     for n, (format_name, write, drawn) in enumerate(FORMATS):
-        whole = ALL or not FEW and format_name in WHOLE and kind == "straight"
+        whole = oracle.RELEASE or not FEW and format_name in WHOLE and kind == "straight"
         step = 1 if whole else 5
         for order, signs in oracle.TURNS[n % step::step]:
             name, data = write(*oracle.turned(voxels, matrix, order, signs))
