@@ -59,7 +59,7 @@ a_rank_of_a_movie() { # 0 writes
 line_comes() {
     local tries=0
     while [ $tries -lt $(($1 * 10)) ]; do
-        grep -q "waits for rank 2 .*ends after 24 s (--timeout)" "$ERR" &&
+        grep -q "waits for rank $RANK .*ends after 24 s (--timeout)" "$ERR" &&
             return
         sleep 0.1
         tries=$((tries + 1))
@@ -70,7 +70,7 @@ line_comes() {
 # In time, and with all the time there is.
 goes_on() {
     local timeout=$1
-    NAME="a rank that goes on, timeout $timeout" RANK=2
+    NAME="rank $RANK goes on, timeout $timeout"
     begin STOP '[ -e f_000003.png ]' "$MPI_TOOL" turntable phantom:head \
         --dims 40x40x40 -s 64x64 --frames 400 -y -o f_%06d.png \
         --timeout $timeout
@@ -150,8 +150,9 @@ aside() {
 }
 RANK=2 aside stopped a_rank_of_a_movie
 RANK=0 aside stopped-0 a_rank_of_a_movie
-aside timeout goes_on 24
-aside no-timeout goes_on 0
+# Rank 0 waits for rank 2 itself, and for rank 3 by way of others.
+RANK=3 aside timeout goes_on 24
+RANK=2 aside no-timeout goes_on 0
 for each in "${asides[@]}"; do
     wait "${each% *}"
     FAILED=$((FAILED + $?))
