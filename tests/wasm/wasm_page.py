@@ -2,6 +2,7 @@
 `snowglass export` made, and one that a server sends so that it may share memory."""
 import functools
 import http.server
+import json
 import os
 import shlex
 import shutil
@@ -49,22 +50,22 @@ def tool(*words):
                           text=True)
 
 
-def watch(page, name, *files):
-    """Looks at a page, and runs its command where the volume is."""
+def watch(*pages):
+    """Looks at pages, each with its volumes, and runs their commands where those are."""
     done = subprocess.run(
-        [node, os.path.join(HERE, "page.mjs"), PLAYWRIGHT, chromium,
-         page, OUT, name, *files], timeout=300)
-    check(f"{name}: the page", done.returncode == 0, done.returncode)
-    if done.returncode:
-        return
-    with open(os.path.join(OUT, f"{name}.txt")) as file:
-        words = shlex.split(file.read())
-    words[words.index("--output") + 1] = "again.png"
-    tool(*words[1:], "-y", "-q", "--isa", "scalar")
-    with open(os.path.join(OUT, "again.png"), "rb") as a, \
-            open(os.path.join(OUT, f"{name}-rest.png"), "rb") as b:
-        check(f"{name}: the picture at rest is the command's",
-              a.read() == b.read())
+        [node, os.path.join(HERE, "page.mjs"), PLAYWRIGHT, chromium, OUT,
+         json.dumps([{"url": url, "volumes": volumes} for url, *volumes in pages])],
+        timeout=500)
+    check("the pages", done.returncode == 0, done.returncode)
+    for name in (volume[0] for _, *volumes in pages for volume in volumes):
+        with open(os.path.join(OUT, f"{name}.txt")) as file:
+            words = shlex.split(file.read())
+        words[words.index("--output") + 1] = "again.png"
+        tool(*words[1:], "-y", "-q", "--isa", "scalar")
+        with open(os.path.join(OUT, "again.png"), "rb") as a, \
+                open(os.path.join(OUT, f"{name}-rest.png"), "rb") as b:
+            check(f"{name}: the picture at rest is the command's",
+                  a.read() == b.read())
 
 
 head = tool("phantom", "head", "--dims", "64x64x48", "-o", "head.nrrd")
@@ -73,18 +74,12 @@ tool("convert", "head.nrrd", "-o", "head.raw")
 with open(os.path.join(OUT, "apart.nhdr"), "w") as file:
     file.write("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 64 64 48\n"
                "spacings: 4 4 4.7\nencoding: raw\ndata file: head.raw\n")
-FILE = "file://" + PAGE
-watch(FILE, "phantom")
-watch(FILE, "dropped", os.path.join(OUT, "head.nrrd"))
-watch(FILE, "apart", os.path.join(OUT, "apart.nhdr"),
-      os.path.join(OUT, "head.raw"))
-
 os.makedirs(os.path.join(OUT, "series"))
 for z in range(11):  # the order is not that of the names
     with open(os.path.join(OUT, "series", f"{7 * z % 11}.dcm"), "wb") as file:
         file.write(dicom(z))
-watch(FILE, "folder", os.path.join(OUT, "series"))
-watch(FILE, "raw", os.path.join(OUT, "head.raw"))
+other = os.path.join(OUT, "other.nrrd")  # whose title is not the page's
+shutil.copy(os.path.join(OUT, "head.nrrd"), other)
 
 with open(os.path.join(OUT, "points.json"), "w") as file:
     file.write('{"snowglass-tf": 1, "values": "data", "opacities": '
@@ -92,7 +87,6 @@ with open(os.path.join(OUT, "points.json"), "w") as file:
 made = tool("export", "made.html", "head.nrrd", "--tf", "points.json",
             "--azimuth", "30", "--legend")
 check("a page is made", made.returncode == 0, made.stderr)
-watch("file://" + os.path.join(OUT, "made.html"), "made")
 
 
 class Isolating(http.server.SimpleHTTPRequestHandler):
@@ -109,11 +103,14 @@ class Isolating(http.server.SimpleHTTPRequestHandler):
 with http.server.ThreadingHTTPServer(
         ("127.0.0.1", 0), functools.partial(Isolating, directory=OUT)) as server:
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    watch(f"http://127.0.0.1:{server.server_port}/made.html", "shared")
-    other = os.path.join(OUT, "other.nrrd")  # whose title is not the page's
-    shutil.copy(os.path.join(OUT, "head.nrrd"), other)
-    watch(f"http://127.0.0.1:{server.server_port}/made.html", "shared-dropped",
-          other)
+    watch(("file://" + PAGE, ["phantom"],
+           ["apart", os.path.join(OUT, "apart.nhdr"), os.path.join(OUT, "head.raw")],
+           ["folder", os.path.join(OUT, "series")],
+           ["raw", os.path.join(OUT, "head.raw")],
+           ["dropped", os.path.join(OUT, "head.nrrd")]),
+          ("file://" + os.path.join(OUT, "made.html"), ["made"]),
+          (f"http://127.0.0.1:{server.server_port}/made.html", ["shared"],
+           ["shared-dropped", other]))
     server.shutdown()
 again = tool("export", "made.html", "head.nrrd")
 check("a page is not replaced", again.returncode == 4 and
