@@ -163,15 +163,16 @@ def everyday():
     plans.append(("restarted", None, [TOOL], ()))
 
 
-HEAD = "phantom:head", "--dims", "128x128x128"  # a page waits for each picture of it
+HEAD = "phantom:head", "--dims", "64x64x64"  # a page waits for each picture of it
 if SHORT:
     plan("short", *HEAD, copies=[PICTURE])
 else:
-    plan("long", *HEAD, copies=(PICTURE, SLICE))
+    plan("long", *HEAD, copies=[PICTURE])
+    plan("more", *HEAD, copies=[SLICE])
     embedded()
     everyday()
     plan("points", *HEAD, "--tf", points("points.json", [[i, i / 300] for i in range(300)]))
-    plan("mask", head("head.nrrd", 128, 128, 128)[0], "--mask",
+    plan("mask", head("head.nrrd", 64, 64, 64)[0], "--mask",
          os.path.join(shots, "head.nrrd"), "--labels", "60-255")
     plan("recipes", *HEAD)
     overlaid()

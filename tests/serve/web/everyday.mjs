@@ -252,7 +252,7 @@ async function planes({check, keys, rest, wheel}, page, its) {
 
 /** A viewer of its own: [process, URL]. */
 async function start(tool, ...options) {
-    const server = spawn(tool, ['serve', 'phantom:head', '--dims', '128x128x128', ...options],
+    const server = spawn(tool, ['serve', 'phantom:head', '--dims', '64x64x64', ...options],
         {stdio: ['ignore', 'pipe', 'ignore']});
     const [line] = await once(createInterface(server.stdout), 'line');
     return [server, line];
@@ -265,7 +265,8 @@ async function end(server) {
 
 /** A viewer that ends is missed in words, and found again; one with another secret
  * is reached by its URL, in the same tab. */
-export async function restarted({check, open, rest, folder, said}, tool) {
+export async function restarted({check, open, part, rest, folder}) {
+    const {url: tool, said} = part();
     const file = `${folder}/token_${process.pid}`;
     let [server, url] = await start(tool, '--token-file', file);
     const {port} = new URL(url), page = await open({}, url);
