@@ -1,6 +1,6 @@
 #!/bin/bash
 # mpi_serve.sh - the viewer over several processes: see tests/serve/many_ranks.py;
-# and a simulation in it: tests/serve/live.py.
+# and a simulation in it: tests/serve/live.py.  They mostly wait, hence together.
 . "$(dirname "$0")/../support/mpi.sh"
 
 need_proc
@@ -8,8 +8,10 @@ need_proc
     skip "the viewer of many ranks is not built"
 is_open_mpi || skip "only the jobs of Open MPI are looked into"
 LIVE=$TESTS/live_simulation
-[ ! -x "$LIVE" ] || timeout -k 5 600 python3 -B "$HERE/serve/live.py" "$TOOL" \
-    "$MPIEXEC" "$LIVE" || FAILED=1
+{ [ ! -x "$LIVE" ] || timeout -k 5 600 python3 -B "$HERE/serve/live.py" "$TOOL" \
+    "$MPIEXEC" "$LIVE"; } >"$WORK/live.txt" 2>&1 &
 timeout -k 5 1140 python3 -B "$HERE/serve/many_ranks.py" "$TOOL" "$MPIEXEC" \
     "$MPI_TOOL" || FAILED=1
+wait $! || FAILED=1
+cat "$WORK/live.txt"
 finish

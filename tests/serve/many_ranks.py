@@ -9,7 +9,7 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from viewer_client import TOOL, Page, Server, check, finish, is_of_command, run_command, \
+from viewer_client import TOOL, Page, Server, aside, check, finish, is_of_command, run_command, \
     slice_is_of_command, write_channels
 
 RANKS = 3
@@ -172,10 +172,9 @@ def newest_and_rest():
     check("so is one that only the volume shows", said is not None)
     check("and pictures go on",
           page.rest(202, crop=None) is not None)
-    time.sleep(1)
     ranks = ranks_of(server)
     before, begin = [seconds_of(rank) for rank in ranks], time.monotonic()
-    time.sleep(4)
+    time.sleep(2)
     shares = [(seconds_of(rank) - was) / (time.monotonic() - begin)
               for rank, was in zip(ranks, before)]
     print("       share of a processor while nothing changes:",
@@ -217,8 +216,8 @@ def histogram_in_place():
     server.process.communicate(timeout=180)
 
 
-def lost_rank():
-    """A rank that is stopped, or gone, ends the job."""
+def stopped_rank():
+    """A rank that is stopped ends the job."""
     server = start("--timeout", "6")
     page = Page(server)
     page.receive_picture(2)
@@ -231,6 +230,10 @@ def lost_rank():
     check("a stopped rank ends the job", code not in (0, None), code)
     check("with one line that names it", len(lines) == 1 and
           f"rank 2 (process {lost}" in lines[0], lines)
+
+
+def killed_rank():
+    """So does one that is gone."""
     server = start("--timeout", "6")
     page = Page(server)
     page.receive_picture(2)
@@ -258,11 +261,12 @@ def refused():
           done.stdout.count("--token-file") == 1, done.stdout)
 
 
+end_of_wait = aside(stopped_rank, killed_rank)
 refused()
 same_as_one(True)
 same_as_one(False)
 channels()
 newest_and_rest()
 histogram_in_place()
-lost_rank()
+end_of_wait()
 finish()

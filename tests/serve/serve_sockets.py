@@ -14,7 +14,7 @@ import time
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 from viewer_client import (PATIENCE, SANITIZED, SHORT, THREADS, TOOL, Page, Server, ThinLink,
-                           check, drag_over, finish, is_of_command, page_comes,
+                           aside, check, drag_over, finish, is_of_command, page_comes,
                            run_command, slice_is_of_command, viewer)
 
 FOLDER = tempfile.TemporaryDirectory()
@@ -314,7 +314,7 @@ def two_at_once(server):
 
 def first_state():
     """What a page sets at once is not lost, nor its first state another one."""
-    server = Server("phantom:head")
+    server = Server("phantom:head", "--dims", "64x64x64")
     page = Page(server)
     page.set(1, zoom=3.5)
     begin = page.receive_text("state")["recipe"]
@@ -825,7 +825,7 @@ def thin_links():
     """5 Mbit/s and 80 ms: what a page at home gets of 1024x1024 pixels."""
     server = Server("phantom:engine", "--preset", "ct-bone")
     link = ThinLink(server, 5e6, 0.04)
-    rate, kinds, sizes = drag_over(server, link, 1024, 8)
+    rate, kinds, sizes = drag_over(server, link, 1024, 4)
     print(f"       5 Mbit/s, 80 ms: {rate:.1f} pictures a second, of "
           f"{sum(sizes) / len(sizes) / 1000:.0f} kB, "
           f"{kinds.count(3)} of {len(kinds)} as WebP")
@@ -866,7 +866,8 @@ def quality_of_links():
     server = Server("phantom:engine", "--preset", "ct-bone")
     link = ThinLink(server, 1e6, 0.04)
     slow = Page(server, port=link.port)
-    slow.rest(1, size=[1024, 1024])
+    slow.say({"t": "moving", "on": True})  # so that no large picture at rest comes
+    slow.set(1, size=[1024, 1024])
     got = drafts(slow, 20, 100)
     qualities = [quality_of(jpeg) for jpeg in got]
     print(f"       1 Mbit/s, 80 ms: quality {qualities[0]} to {qualities[-1]}, "
@@ -980,6 +981,7 @@ floods(server)
 crop_and_back(server)
 two_at_once(server)
 if not SHORT:
+    links_end = aside(thin_links, quality_of_links)
     slow_ones(server)
     many_pages(server)
     thumbnails_wait(server)
@@ -1008,8 +1010,7 @@ if not SHORT:
     taken_back()
     too_many_slices()
     values_and_depths()
-    thin_links()
-    quality_of_links()
+    links_end()
 if not (SHORT or SANITIZED):
     streamed_slices()
 embedded()

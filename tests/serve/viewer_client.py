@@ -5,6 +5,7 @@ Tests are run as `python3 serve_NAME.py TOOL DATA`; they exit with 77 where the
 viewer is not built."""
 import base64
 import collections
+import concurrent.futures
 import contextlib
 import http.client
 import json
@@ -37,6 +38,13 @@ def check(name, good, why=""):
     global wrong
     print(f"ok     {name}" if good else f"FAILED {name}: {why}")
     wrong += not good
+
+
+def aside(*tests):
+    """Begins tests that mostly wait; the function that it returns ends when they have."""
+    pool = concurrent.futures.ThreadPoolExecutor()
+    begun = [pool.submit(test) for test in tests]
+    return lambda: [each.result() for each in begun]
 
 
 def finish():
