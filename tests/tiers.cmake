@@ -57,17 +57,17 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
 # is left of their processor time.  ctest begins with the longest, so that no core is
 # idle at the end.
 set(SNOW_COSTS
-    serve_browser 283 wasm_engine 167 wasm_page 151 mpi_serve 100 python 95
-    cli_stream 70 serve_sockets 68 cli_large 66 mpi_render 49 isa_neon 42
+    serve_browser 110 python 95 cli_stream 70 cli_large 66 mpi_render 49
+    wasm_engine 48 wasm_page 48 mpi_serve 42 serve_sockets 42 isa_neon 42
     mpi_stall 40 package_wheel 40 test_stream 35 test_ranks 35 cli_figures 33
     cli_documents 31 test_ranks_open 31 oracle_amr 30 package_cmake 30
     oracle_zarr 29 oracle_vtk 29 cli_turntable 28 mpi_fail 25 test_same_bits 25
     oracle_damage 25 package_manual 24 package_within 22 cli_bench 22
     oracle_netcdf 22 oracle_hdf5 21 test_pipeline 21 mpi_insitu 21
-    test_histogram 20 cli_again 20 test_stop 18 cli_channels 18
-    cli_shear_warp 17 cli_interrupt 17 serve_fuzz 16 oracle_tiff 16
-    test_raycast 15 cli_render 15 mpi_comm 14 test_insitu 14 package_site 14
-    oracle_orientation 13 serve_hostile 13 oracle_dicom 13 oracle_slice 13
+    test_histogram 20 cli_again 20 test_stop 18 cli_channels 18 cli_shear_warp 17
+    cli_interrupt 17 serve_fuzz 16 oracle_tiff 16 test_raycast 15 cli_render 15
+    mpi_comm 14 test_insitu 14 package_site 14 oracle_orientation 13
+    serve_hostile 13 oracle_dicom 13 oracle_slice 13
     test_model_picture 13 cli_progress 12 oracle_seg 12 test_truth 12
     test_combine 11 package_layout 10 cli_real 10 mpi_python 10 test_modes 10
     package_pkgconfig 10 cli_matrix 10 test_channels 9 test_model_encodings 9
