@@ -823,7 +823,7 @@ RECIPES = [
 
 def thin_links():
     """5 Mbit/s and 80 ms: what a page at home gets of 1024x1024 pixels."""
-    server = Server("phantom:engine", "--preset", "ct-bone")
+    server = Server("phantom:engine", "--dims", "64x64x64", "--preset", "ct-bone")
     link = ThinLink(server, 5e6, 0.04)
     rate, kinds, sizes = drag_over(server, link, 1024, 4)
     print(f"       5 Mbit/s, 80 ms: {rate:.1f} pictures a second, of "
@@ -862,8 +862,9 @@ def quality_of(jpeg):
 
 def quality_of_links():
     """Through 1 Mbit/s a page that wants no WebP gets less and less in a picture,
-    and those beside it too while it is there."""
-    server = Server("phantom:engine", "--preset", "ct-bone")
+    and those beside it too while it is there.  A small volume, and nothing beside it, as
+    drafts that take long get smaller, and fit."""
+    server = Server("phantom:engine", "--dims", "32x32x32", "--preset", "ct-bone")
     link = ThinLink(server, 1e6, 0.04)
     slow = Page(server, port=link.port)
     slow.say({"t": "moving", "on": True})  # so that no large picture at rest comes
@@ -981,7 +982,7 @@ floods(server)
 crop_and_back(server)
 two_at_once(server)
 if not SHORT:
-    links_end = aside(thin_links, quality_of_links)
+    link_ends = aside(thin_links)
     slow_ones(server)
     many_pages(server)
     thumbnails_wait(server)
@@ -1010,7 +1011,8 @@ if not SHORT:
     taken_back()
     too_many_slices()
     values_and_depths()
-    links_end()
+    link_ends()
+    quality_of_links()
 if not (SHORT or SANITIZED):
     streamed_slices()
 embedded()
