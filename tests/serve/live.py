@@ -172,6 +172,7 @@ def strange_pictures():
     page = Page(server)
     told = {"step": 1, "dims": [4, 5, 6], "range": [0, 1], "opacity": [],
             "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}
+    page.receive_text("state")  # the page is known
     show(1, {**told, "range": [2, 1]})
     check("why a look cannot be made is said",
           "range" in page.receive_text("said")["text"])
