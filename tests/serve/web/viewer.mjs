@@ -1189,9 +1189,10 @@ async function many() {
         `${list} ${await on()}`);
     await page.evaluate(() => { document.querySelector('.said').textContent = ''; });
     await section.getByLabel('channel 8', {exact: true}).click();
-    const line = await (await page.waitForFunction(() => document.querySelector('.said').textContent)).jsonValue();
-    await rest(page); // by which time a slow machine has taken the line away
-    check('a ninth is refused with what to do', /up to 8/.test(line), line);
+    // A slow machine says its progress too, and has taken the line away by the rest.
+    await page.waitForFunction(() => /up to 8/.test(document.querySelector('.said').textContent));
+    await rest(page);
+    check('a ninth is refused with what to do', true);
     check('and its box is as the picture', String(await on()) === '1,1,1,1,1,1,1,1,0,0', String(await on()));
     await settle(page, section.getByLabel('dye 3', {exact: true}).click());
     await settle(page, section.getByLabel('channel 8', {exact: true}).click());
