@@ -174,14 +174,14 @@ void snow_shade_gradients(const snow_shader *shader,
 
 /* Corrects the opacities of a row block from the reference length to the path
  * lengths of the voxels' own rays. Colours are premultiplied. */
-void snow_scale_path_length(const snow_placement *placement,
-                            double opacity_length, int channels,
-                            snow_row_block *row_block);
-
-/* Multiplies the samples of a row block by the lengths of their rays within a
- * sheet, in reference lengths: for sums along rays. */
 void snow_correct_opacity(const snow_placement *placement,
                           double opacity_length, int channels,
                           snow_row_block *row_block);
+
+/* Multiplies the samples of a row block by the lengths of their rays within a
+ * sheet, in reference lengths: for sums along rays. */
+void snow_scale_by_path_length(const snow_placement *placement,
+                               double opacity_length, int channels,
+                               snow_row_block *row_block);
 
 #endif

@@ -13,9 +13,9 @@ static double path_of(const snow_placement *placement,
                                  (double)row_block->slice);
 }
 
-void snow_correct_opacity(const snow_placement *placement,
-                          double opacity_length, int channels,
-                          snow_row_block *row_block) {
+void snow_scale_by_path_length(const snow_placement *placement,
+                               double opacity_length, int channels,
+                               snow_row_block *row_block) {
     size_t n = 0;
     for (int64_t row = 0; row < row_block->rows; row++)
         for (; n < row_block->row_end[row]; n++) {
@@ -26,9 +26,9 @@ void snow_correct_opacity(const snow_placement *placement,
         }
 }
 
-void snow_scale_path_length(const snow_placement *placement,
-                            double opacity_length, int channels,
-                            snow_row_block *row_block) {
+void snow_correct_opacity(const snow_placement *placement,
+                          double opacity_length, int channels,
+                          snow_row_block *row_block) {
     size_t n = 0;
     for (int64_t row = 0; row < row_block->rows; row++)
         for (; n < row_block->row_end[row]; n++) {

@@ -83,7 +83,7 @@ static size_t more(size_t a, size_t b) {
 static int64_t most_held(const snow_combiner *combiner, int level) {
     const snow_rounds *rounds = &combiner->rounds;
     const snow_region_bounds *bounds = &combiner->bounds;
-    int group = rounds->rank_order;
+    int group = rounds->rank_count;
     for (int i = rounds->count - 1; i >= level && group > 1; i--)
         group = group / rounds->radices[i] > 1 ? group / rounds->radices[i] : 1;
     if (rounds->tree || level == 0)
@@ -96,8 +96,8 @@ static int64_t most_held(const snow_combiner *combiner, int level) {
 /* The most messages of a rank in a round (snow_rounds_capacity). */
 static size_t peers_in(const snow_rounds *rounds, int level) {
     int radix = rounds->radices[level];
-    return 2 * (size_t)(radix < rounds->rank_order ? radix
-                                                   : rounds->rank_order) +
+    return 2 * (size_t)(radix < rounds->rank_count ? radix
+                                                   : rounds->rank_count) +
            4;
 }
 
@@ -140,7 +140,7 @@ static void count_needs(const snow_combiner *combiner,
 /* Allocates what does not depend on the borders of regions. */
 static snow_status allocate_lists(snow_combiner *combiner) {
     snow_context *context = combiner->comm->context;
-    const size_t rank_order = (size_t)combiner->comm->ranks;
+    const size_t rank_count = (size_t)combiner->comm->ranks;
     size_t peers = 8;
     for (int i = 0; i < combiner->rounds.count; i++)
         peers = more(peers, peers_in(&combiner->rounds, i));
@@ -153,8 +153,8 @@ static snow_status allocate_lists(snow_combiner *combiner) {
     }
     SNOW_TRY(SNOW_RESERVE(context, combiner->rounds.shares, 0,
                           snow_rounds_capacity(&combiner->rounds)));
-    SNOW_TRY(SNOW_RESERVE(context, combiner->ranks, 0, rank_order));
-    SNOW_TRY(SNOW_RESERVE(context, combiner->table, 0, rank_order));
+    SNOW_TRY(SNOW_RESERVE(context, combiner->ranks, 0, rank_count));
+    SNOW_TRY(SNOW_RESERVE(context, combiner->table, 0, rank_count));
     SNOW_TRY(SNOW_RESERVE(context, combiner->layers, 0,
                           SNOW_COMBINE_THREADS * peers));
     combiner->layer_room = (int)peers;
@@ -306,7 +306,7 @@ static snow_status plan_rank_order(snow_combiner *combiner,
                                    const snow_exchange_params *order) {
     snow_rounds *rounds = &combiner->rounds;
     int rank_position = -1, display = -1;
-    for (int i = 0; i < rounds->rank_order; i++) {
+    for (int i = 0; i < rounds->rank_count; i++) {
         if (order->ranks[i] == combiner->comm->rank)
             rank_position = i;
         if (order->ranks[i] == 0)
@@ -323,7 +323,7 @@ static snow_status plan_rank_order(snow_combiner *combiner,
         snow_rounds_fill(rounds, rank_position, display, combiner->table);
     combiner->filled = true;
     memcpy(combiner->ranks, order->ranks,
-           (size_t)rounds->rank_order * sizeof *order->ranks);
+           (size_t)rounds->rank_count * sizeof *order->ranks);
     return SNOW_STATUS_OK;
 }
 

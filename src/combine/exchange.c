@@ -335,9 +335,9 @@ snow_status snow_exchange(snow_combiner *combiner,
 void snow_exchange_regions(const snow_combiner *combiner, int64_t *firsts,
                            int64_t *counts) {
     const snow_rounds *rounds = &combiner->rounds;
-    for (int i = 0; i < rounds->rank_order; i++) {
+    for (int i = 0; i < rounds->rank_count; i++) {
         snow_share share = {i, snow_rounds_last(rounds, i),
-                            rounds->tree ? 1 : rounds->rank_order};
+                            rounds->tree ? 1 : rounds->rank_count};
         snow_stretch region = stretch_of(combiner, &share);
         firsts[combiner->ranks[i]] = region.first;
         counts[combiner->ranks[i]] = region.last - region.first;

@@ -34,7 +34,7 @@ static int subset_at(group whole, int radix, int rank_position) {
 
 /* The group of a rank position after `level` rounds. */
 static group group_at(const snow_rounds *rounds, int level, int rank_position) {
-    group g = {0, rounds->rank_order};
+    group g = {0, rounds->rank_count};
     for (int i = rounds->count - 1; i >= level; i--)
         g = subset_of(g, rounds->radices[i],
                       subset_at(g, rounds->radices[i], rank_position));
@@ -111,7 +111,7 @@ size_t snow_rounds_capacity(const snow_rounds *rounds) {
     for (int i = 0; i < rounds->count; i++) /* in either list, and spare */
         capacity +=
             2 *
-            (size_t)(2 * SNOW_MIN(rounds->radices[i], rounds->rank_order) + 4);
+            (size_t)(2 * SNOW_MIN(rounds->radices[i], rounds->rank_count) + 4);
     return capacity;
 }
 
@@ -164,7 +164,7 @@ void snow_rounds_fill(snow_rounds *rounds, int rank_position, int display,
 }
 
 int snow_rounds_last(const snow_rounds *rounds, int rank_position) {
-    return region_at(rounds, rounds->count, (group){0, rounds->rank_order},
+    return region_at(rounds, rounds->count, (group){0, rounds->rank_count},
                      rank_position);
 }
 
@@ -186,7 +186,7 @@ int snow_rounds_last(const snow_rounds *rounds, int rank_position) {
 
 /* A search of all sequences of radices, pruned where none can be the best. */
 typedef struct search {
-    double rank_order, bytes, best;
+    double rank_count, bytes, best;
     int nodes;                            /* 1: all ranks are on one */
     int radices[SNOW_ROUNDS_MOST], count; /* current */
     snow_rounds *found;
@@ -201,7 +201,7 @@ static double round_seconds(const search *s, int left, int radix) {
      * parts of the volume are combined. */
     const double active_part =
         FOOTPRINT * (1 - pow(1 - HIDDEN, 32 * (1.0 / left)));
-    double held = s->bytes * active_part * left / s->rank_order;
+    double held = s->bytes * active_part * left / s->rank_count;
     double start = OVERHEAD * messages;
     double travel = SECONDS_A_BYTE * held * (radix - 1) / radix;
     return LATENCY + OVERHEAD * messages + (start > travel ? start : travel);
@@ -236,29 +236,29 @@ static void search_rounds(search *s, int left, double seconds) {
 }
 
 /* Takes as many rounds of one radix as necessary, the last with the rest. */
-static void repeat_radix(snow_rounds *rounds, int rank_order, int radix) {
+static void repeat_radix(snow_rounds *rounds, int rank_count, int radix) {
     rounds->count = 0;
-    for (int left = rank_order; left > 1; left = (left + radix - 1) / radix)
+    for (int left = rank_count; left > 1; left = (left + radix - 1) / radix)
         rounds->radices[rounds->count++] = SNOW_MIN(radix, left);
 }
 
 void snow_rounds_choose(snow_rounds *rounds, snow_combine method, int radix,
-                        int rank_order, int node_ranks, int64_t pixels,
+                        int rank_count, int node_ranks, int64_t pixels,
                         size_t pixel_bytes) {
-    rounds->rank_order = rank_order;
+    rounds->rank_count = rank_count;
     rounds->tree = method == SNOW_COMBINE_TREE;
     rounds->count = 0;
     if (method == SNOW_COMBINE_TREE || method == SNOW_COMBINE_SWAP)
-        repeat_radix(rounds, rank_order, 2);
+        repeat_radix(rounds, rank_count, 2);
     else if (method == SNOW_COMBINE_DIRECT)
-        repeat_radix(rounds, rank_order, rank_order > 2 ? rank_order : 2);
+        repeat_radix(rounds, rank_count, rank_count > 2 ? rank_count : 2);
     else if (method == SNOW_COMBINE_RADIX && radix)
-        repeat_radix(rounds, rank_order, radix);
-    else if (rank_order > 1)
-        search_rounds(&(search){.rank_order = rank_order,
+        repeat_radix(rounds, rank_count, radix);
+    else if (rank_count > 1)
+        search_rounds(&(search){.rank_count = rank_count,
                                 .bytes = (double)pixels * (double)pixel_bytes,
                                 .best = HUGE_VAL,
-                                .nodes = rank_order / node_ranks,
+                                .nodes = rank_count / node_ranks,
                                 .found = rounds},
-                      rank_order, 0);
+                      rank_count, 0);
 }

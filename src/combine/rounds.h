@@ -42,7 +42,7 @@ typedef struct snow_round {
 
 typedef struct snow_rounds {
     int count, radices[SNOW_ROUNDS_MOST];   /* in the order of rounds */
-    int rank_order, rank_position, display; /* display: rank 0's position */
+    int rank_count, rank_position, display; /* display: rank 0's position */
     bool tree;
     snow_round rounds[SNOW_ROUNDS_MOST];
     snow_share *shares; /* the lists, one after another */
@@ -56,11 +56,11 @@ size_t snow_rounds_capacity(const snow_rounds *rounds);
  * `radix` as in snow_exchange_params; `node_ranks` neighbours are a node, whose
  * images the first rounds combine. Sets count, radices and tree. */
 void snow_rounds_choose(snow_rounds *rounds, snow_combine method, int radix,
-                        int rank_order, int node_ranks, int64_t pixels,
+                        int rank_count, int node_ranks, int64_t pixels,
                         size_t pixel_bytes);
 
 /* Fills in the lists for a rank position; `shares` has the capacity of
- * snow_rounds_capacity, and `table` that of `rank_order` numbers. */
+ * snow_rounds_capacity, and `table` that of `rank_count` numbers. */
 void snow_rounds_fill(snow_rounds *rounds, int rank_position, int display,
                       int *table);
 

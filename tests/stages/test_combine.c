@@ -774,17 +774,17 @@ static void counted_pieces_are_balanced(void **state) {
 
 /* How many messages go from seat to seat in each round, counted at both ends,
  * as a sum that tells who, whom and when. */
-static void check_plan(snow_combine method, int radix, int rank_order) {
+static void check_plan(snow_combine method, int radix, int rank_count) {
     snow_rounds rounds;
-    snow_rounds_choose(&rounds, method, radix, rank_order, 1, 1 << 20, 16);
+    snow_rounds_choose(&rounds, method, radix, rank_count, 1, 1 << 20, 16);
     assert_true(rounds.count <= SNOW_ROUNDS_MOST);
     size_t room = snow_rounds_capacity(&rounds);
     rounds.shares = calloc(room + 1, sizeof *rounds.shares);
-    int *table = calloc((size_t)rank_order, sizeof *table);
-    int *owners = calloc((size_t)rank_order, sizeof *owners);
+    int *table = calloc((size_t)rank_count, sizeof *table);
+    int *owners = calloc((size_t)rank_count, sizeof *owners);
     uint64_t sent = 0, received = 0;
-    for (int rank_position = 0; rank_position < rank_order; rank_position++) {
-        snow_rounds_fill(&rounds, rank_position, rank_order / 3, table);
+    for (int rank_position = 0; rank_position < rank_count; rank_position++) {
+        snow_rounds_fill(&rounds, rank_position, rank_count / 3, table);
         assert_true((size_t)rounds.share_count <= room);
         for (int i = 0; i < rounds.count; i++) {
             const snow_round *round = &rounds.rounds[i];
@@ -803,7 +803,7 @@ static void check_plan(snow_combine method, int radix, int rank_order) {
             owners[last]++;
     }
     assert_true(sent == received);
-    for (int i = 0; i < (method == SNOW_COMBINE_TREE ? 1 : rank_order); i++)
+    for (int i = 0; i < (method == SNOW_COMBINE_TREE ? 1 : rank_count); i++)
         assert_int_equal(owners[i], 1);
     free(rounds.shares);
     free(table);

@@ -7,7 +7,8 @@
 #include "transfer/transfer.h"
 #include "volume/volume.h"
 
-/* The largest number, and what stands for a hole: a voxel without a value. */
+/* The largest quantized value, and what stands for a hole: a voxel without a
+ * value. */
 #define SNOW_VALUE_MOST 16383
 #define SNOW_VALUE_HOLE INT16_MIN
 

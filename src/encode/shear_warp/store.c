@@ -63,7 +63,7 @@ static void place_stored(snow_value_store *s,
     if (!s->in_place)
         return;
     s->kind = snow_type_size(quantizer->type) == 1 ? SNOW_VALUE_BYTES
-                                                   : SNOW_VALUE_WORDS;
+                                                   : SNOW_VALUE_SHORTS;
     s->fixed = quantizer->scale.fixed;
     s->stored = params->volume->voxels;
     s->native_count =

@@ -44,7 +44,7 @@
 typedef enum snow_value_kind {
     SNOW_VALUE_QUANTIZED, /* of 16 bits, with margins */
     SNOW_VALUE_BYTES,     /* native values, unsigned, of 8 bits */
-    SNOW_VALUE_WORDS,     /* native values of 16 bits */
+    SNOW_VALUE_SHORTS,    /* native values of 16 bits */
 } snow_value_kind;
 
 /* Stored values first .. first + width, which may go round beyond the largest
@@ -67,13 +67,15 @@ typedef struct snow_value_store {
     bool labels; /* quantized values are labels */
     bool cubic;  /* of kernel bspline: slices are smoothed along P, and cells
                     are those of 4x4 voxels */
-    bool holes;  /* there are some: plane `run_count` of the masks is of them */
+    bool holes;  /* there are some: plane `interval_count` of the masks is of
+                    them */
     /* A word of 32 columns from column -32 - margin on; rows from that on. */
-    uint32_t *masks; /* [run][slice][word][row] */
+    uint32_t *masks; /* [interval][slice][word][row] */
     size_t mask_words, mask_rows;
     /* A bit for each SNOW_VALUE_COARSE rows of these; those of all slices lie
      * together, for a tile looks at few words of them. */
-    uint64_t *coarse; /* [run][word][slice][row / SNOW_VALUE_COARSE / 64] */
+    uint64_t
+        *coarse; /* [interval][word][slice][row / SNOW_VALUE_COARSE / 64] */
     size_t coarse_words;
     uint64_t *eights; /* the same for each SNOW_VALUE_EIGHT slices */
     int64_t eight_count;
@@ -90,12 +92,12 @@ typedef struct snow_value_store {
     bool in_place;              /* rows are stored values at regular steps */
     bool turned;                /* in a copy */
     snow_fixed_quantizer fixed; /* from stored values to quantized values */
-    /* In place voxel (c, r) of slice k is native number k slice_step + r
+    /* In place voxel (c, r) of slice k is stored value k slice_step + r
      * row_step + c of native_count. */
     const unsigned char *stored;
     int64_t slice_step, row_step, native_count;
-    /* Else it is number, or native number, at[k][r] + c; elsewhere anything may
-     * be read. */
+    /* Else it is value at[k][r] + c of `values` or of the copy; elsewhere
+     * anything may be read. */
     unsigned char *copy;
     int16_t *values;
     int64_t *at;            /* [slice][row + margin] */

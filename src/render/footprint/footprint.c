@@ -240,15 +240,15 @@ static int64_t nth_slice(const snow_job *job, int64_t n) {
 static void correct_lengths(const snow_job *job, snow_row_block *row_block) {
     const snow_settings *s = &job->settings;
     if (s->mode == SNOW_MODE_OVER)
-        snow_scale_path_length(&job->stored, s->opacity_length, job->channels,
-                               row_block);
-    else if (s->mode == SNOW_MODE_SUM)
         snow_correct_opacity(&job->stored, s->opacity_length, job->channels,
                              row_block);
+    else if (s->mode == SNOW_MODE_SUM)
+        snow_scale_by_path_length(&job->stored, s->opacity_length,
+                                  job->channels, row_block);
 }
 
-/* Classifies and shades `rows` rows of a slice, or as many as a strip holds,
- * from `row` on into the worker's strip. */
+/* Classifies and shades `rows` rows of a slice, or as many as a row block
+ * holds, from `row` on into the worker's. */
 static void classify_and_shade(const pass *work, worker *w, int64_t slice,
                                int64_t row, int64_t rows) {
     const snow_footprint_buffers *buffers = work->buffers;

@@ -1,5 +1,6 @@
 /* render/modes/modes.c - from a job to a picture in a mode other than over: the
- * ramp, a local image of pairs by the picture's method, and what they mean. */
+ * identity transfer function, a local image of (value, weight) by the picture's
+ * method, and what they mean. */
 #include "render/modes/modes.h"
 #include "render/job.h"
 #include "transfer/scale.h"
@@ -8,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* --- the ramp ------------------------------------------------------------- */
+/* --- the identity transfer function --------------------------------------- */
 
 void snow_identity_transfer_fini(snow_identity_transfer *identity) {
     snow_transfer_free(identity->transfer);
@@ -77,8 +78,8 @@ snow_status snow_identity_transfer_measure(snow_job *job,
     return SNOW_STATUS_OK;
 }
 
-/* Makes the transfer function of a ramp that is measured, unless it is there
- * already. */
+/* Makes an identity transfer function whose range is measured, unless it is
+ * there already. */
 static snow_status
 prepare_identity_transfer(const snow_job *job,
                           const struct snow_identity_kind *wanted,
@@ -293,9 +294,9 @@ snow_status snow_modes_paint(snow_frame *frame, const snow_job *job,
 
 snow_status snow_modes_value_weight(snow_frame *frame, snow_job *job,
                                     snow_job *pairs) {
-    const struct snow_identity_kind ramp = {.inverted = job->settings.mode ==
+    const struct snow_identity_kind kind = {.inverted = job->settings.mode ==
                                                         SNOW_MODE_MINIP};
-    SNOW_TRY(prepare_identity_transfer(job, &ramp, &frame->identity));
+    SNOW_TRY(prepare_identity_transfer(job, &kind, &frame->identity));
     *pairs = *job;
     pairs->transfer = frame->identity.transfer;
     pairs->channels = 2;

@@ -1,12 +1,13 @@
 /* render/modes/modes.h - pictures other than over (model, point 8): mip, minip,
  * mean, sum.
  *
- * They are over's pictures of another look.  A ramp is a transfer function
- * whose grey is the data value itself, carried from the volume's own range to 0
- * to 1, and whose opacity is 1 for every finite voxel, so that classification,
- * the three encodings and splatting serve as they are, and a sheet's pixel is
- * (weighted values, weights).  composite/over.h has how sheets become a
- * local image of such pairs; here they become colours or data values. */
+ * They are over's pictures of another look.  The identity transfer function is
+ * one whose grey is the data value itself, carried from the volume's own range
+ * to 0 to 1, and whose opacity is 1 for every finite voxel, so that
+ * classification, the three encodings and splatting serve as they are, and a
+ * sheet's pixel is (weighted values, weights).  composite/over.h has how sheets
+ * become a local image of such pairs; here they become colours or data values.
+ */
 #ifndef SNOW_RENDER_MODES_MODES_H
 #define SNOW_RENDER_MODES_MODES_H
 
@@ -41,7 +42,7 @@ void snow_identity_transfer_fini(snow_identity_transfer *identity);
 
 struct snow_job;
 
-/* Finds the range of a job's volume, unless the ramp has it already. */
+/* Finds the range of a job's volume, unless that is known. */
 snow_status snow_identity_transfer_measure(struct snow_job *job,
                                            snow_identity_transfer *identity);
 
@@ -55,8 +56,8 @@ snow_status snow_identity_transfer_widen(snow_context *context,
 snow_status snow_identity_transfer_above(struct snow_job *job,
                                          snow_identity_transfer *identity);
 
-/* The job whose local image are the pairs of a picture, when the ramp is
- * measured.  It lasts as long as the frame's ramp. */
+/* The job whose local image are the pairs of a picture, when the range is
+ * measured.  It lasts as long as the frame's identity transfer function. */
 snow_status snow_modes_value_weight(snow_frame *frame, struct snow_job *job,
                                     struct snow_job *pairs);
 

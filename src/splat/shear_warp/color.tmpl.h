@@ -49,7 +49,7 @@ TARGET VALUE_LEAF void NAME(face)(const snow_value_light *l, V(vec) u, V(vec) v,
     out[2] = NAME(dot)(l->half, u, v, p);
 }
 
-/* The largest shininess whose powers are taken of quantized values of 15 bits.
+/* The largest shininess whose powers are taken of numbers of 15 bits.
  */
 #define POWER_MOST 64
 
@@ -326,7 +326,7 @@ TARGET static void NAME(lengthen_all)(const snow_value_splat *p,
     }
 }
 
-/* All samples of a queue, whose last 32 quantized values and more are 0. */
+/* All samples of a queue, whose last 32 entries and more are 0. */
 TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
                                      float slope[2][2], value_queue *q,
                                      int count, const int channels,

@@ -26,7 +26,7 @@ TARGET VALUE_INLINE void NAME(pick_cells)(const snow_value_store *s,
     }
 }
 
-/* Whether the coarse mask of a run has anything between two rows, in the
+/* Whether the coarse mask of an interval has anything between two rows, in the
  * columns under the lanes. */
 static inline bool NAME(any_cells)(const snow_value_store *s, int interval,
                                    int64_t slice, const snow_value_lanes *u,
@@ -54,7 +54,7 @@ static inline int64_t NAME(mask_row)(const snow_value_store *s,
 }
 
 /* The cells of a resampled slice under some rows of a tile that are not wholly
- * within a run, for each run. */
+ * within an interval, for each interval. */
 TARGET static void NAME(find_cells)(const snow_value_store *s,
                                     const snow_resampled_slice *resampled,
                                     const snow_value_lanes *u,
@@ -408,7 +408,7 @@ TARGET VALUE_ONCE void NAME(sample_eye)(const snow_value_splat *p, int n,
         out->holes = NAME(near_holes_eye)(s, resampled, u, v);
     }
     NAME(begin)(s, resampled, &rows, &across, out, &from);
-    uint32_t partial[SHEET_ROWS];
+    uint32_t partial[RESAMPLED_ROWS];
     if (s->cubic)
         NAME(fill_cubic_eye)(&from, s, u, v, p->rays->resampled_slices[n].step,
                              0, rows, out->values, out->holes,

@@ -1,7 +1,7 @@
 /* splat/shear_warp/faint.tmpl.h - composites slabs of which each shows little,
  * in floats.  Included by tile.tmpl.h. */
 
-/* LANES quantized values of a plane: what shines through, times the colour. */
+/* LANES pixels of a plane: what shines through, times the colour. */
 TARGET VALUE_INLINE void NAME(add_faint)(float *plane, const int16_t *color,
                                          V(vec) through) {
     V(store)(plane,

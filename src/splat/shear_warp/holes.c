@@ -260,8 +260,8 @@ static void sum_rows(hole_slice *resampled, const value_spot *spot) {
                 resampled->count, v->weight[y], v->slope[y], &resampled->sums);
 }
 
-/* Of a sample: twice the gradient of what is there, as quantized values; zeros
- * are there. */
+/* Of a sample: twice the gradient of what is there, in steps of quantized
+ * values; zeros are there. */
 static void lean_of(hole_slice *resampled, const value_spot *spot,
                     int16_t out[3]) {
     const hole_columns *holes = &resampled->sums;

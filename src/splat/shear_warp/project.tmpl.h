@@ -2,8 +2,8 @@
  * smallest value at the ends of its slabs, or their sum by the trapezoid rule.
  * Included by tile.tmpl.h.
  *
- * Slabs whose values are all in an invisible run add nothing but that the ray
- * is there, and how long it is; where no voxel is a hole the geometry says
+ * Slabs whose values are all in a transparent interval add nothing but that the
+ * ray is there, and how long it is; where no voxel is a hole the geometry says
  * that. */
 
 /* Twice the mean of a slab's ends, in the sums of a row. */

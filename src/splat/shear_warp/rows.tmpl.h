@@ -88,7 +88,7 @@ TARGET static V(row) NAME(load_some)(const snow_value_store *s, int64_t place) {
         memcpy(stored + first * size, s->stored + (place + first) * size,
                (size_t)((end - first) * size));
     return size == 1 ? NAME(load_stored)(stored, 0, SNOW_VALUE_BYTES)
-                     : NAME(load_stored)(stored, 0, SNOW_VALUE_WORDS);
+                     : NAME(load_stored)(stored, 0, SNOW_VALUE_SHORTS);
 }
 
 /* 32 quantized values of a row of the volume from `column` on, of which those
@@ -178,7 +178,7 @@ TARGET VALUE_LEAF void NAME(pair)(const NAME(source) *s, int end, int on,
 #define LINE_VALUES (32 * SNOW_VALUE_SPREAD_MOST + 128)
 
 /* `count` quantized values of a row from `column` on: where they are, or in
- * `room`. */
+ * `scratch`. */
 TARGET static const int16_t *NAME(line)(const NAME(source) *s, int end, int on,
                                         int64_t row, int64_t column, int count,
                                         int16_t *scratch) {
@@ -192,7 +192,7 @@ TARGET static const int16_t *NAME(line)(const NAME(source) *s, int end, int on,
             NAME(pair)(s, end, on, row, column + n, SNOW_VALUE_BYTES, true,
                        both);
         else
-            NAME(pair)(s, end, on, row, column + n, SNOW_VALUE_WORDS, true,
+            NAME(pair)(s, end, on, row, column + n, SNOW_VALUE_SHORTS, true,
                        both);
         V(row_store)(scratch + n, both[0]);
     }

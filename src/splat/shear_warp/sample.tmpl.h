@@ -3,7 +3,7 @@
 
 /* --- masks ---------------------------------------------------------------- */
 
-/* Masks of 32 rows are 32 words: two rows of quantized values. */
+/* Masks of 32 rows are 32 words: two rows of vectors. */
 TARGET VALUE_LEAF void NAME(set_masks)(uint32_t *to, V(row) low, V(row) high) {
     V(row_store)((int16_t *)(void *)to, low);
     V(row_store)((int16_t *)(void *)(to + 16), high);
@@ -14,8 +14,8 @@ TARGET VALUE_LEAF void NAME(copy_masks)(uint32_t *to, const uint32_t *from) {
                     V(row_load)((const int16_t *)(const void *)(from + 16)));
 }
 
-/* Ors the cells of a resampled slice under a tile that are not wholly within a
- * run. */
+/* Ors the cells of a resampled slice under a tile that are not wholly within an
+ * interval. */
 TARGET VALUE_LEAF void NAME(add_cells)(const snow_value_store *s, int interval,
                                        const snow_resampled_slice *resampled,
                                        value_window w, uint32_t *out) {
@@ -310,8 +310,8 @@ static inline bool NAME(readable)(const NAME(source) *s, int64_t first,
 VALUE_FILL(quantized, fill_rows, SNOW_VALUE_QUANTIZED, false)
 VALUE_FILL(any_bytes, fill_rows_of, SNOW_VALUE_BYTES, false)
 VALUE_FILL(sided_bytes, fill_rows, SNOW_VALUE_BYTES, true)
-VALUE_FILL(words, fill_rows, SNOW_VALUE_WORDS, false)
-VALUE_FILL(sided_words, fill_rows, SNOW_VALUE_WORDS, true)
+VALUE_FILL(words, fill_rows, SNOW_VALUE_SHORTS, false)
+VALUE_FILL(sided_words, fill_rows, SNOW_VALUE_SHORTS, true)
 #undef VALUE_FILL
 
 /* Rows of a resampled slice, a bit each from row `first` on, into `out`. */
@@ -400,7 +400,7 @@ TARGET VALUE_ONCE void NAME(sample_all)(const snow_value_splat *p, int n,
     NAME(source) from;
     NAME(begin)(s, resampled, &rows, &across, out, &from);
     from.column = column;
-    uint32_t partial[SHEET_ROWS];
+    uint32_t partial[RESAMPLED_ROWS];
     if (s->cubic)
         NAME(fill_cubic)(&from, first - 1, rows, place, out->values, out->holes,
                          resampled->between);

@@ -50,7 +50,7 @@
 #endif
 
 /* Rows of a resampled slice's tile: one more on each side, for gradients. */
-#define SHEET_ROWS (SNOW_VALUE_ROWS + 2)
+#define RESAMPLED_ROWS (SNOW_VALUE_ROWS + 2)
 
 /* Phases that are coloured together. */
 #define TOGETHER 4
@@ -58,7 +58,7 @@
 /* A phase of a resampled slice.  Row r of the tile is values[r + 1]. */
 typedef struct value_rows {
     int16_t before[32]; /* lanes -1 are read */
-    int16_t values[SHEET_ROWS][32];
+    int16_t values[RESAMPLED_ROWS][32];
     int16_t behind[32];
     int16_t across[SNOW_VALUE_ROWS][32]; /* differences along P */
     uint64_t has;                        /* rows of values, from row -1 on */
@@ -262,8 +262,8 @@ static inline value_window value_window_of(const snow_value_store *s,
                           (int)(bit % 32)};
 }
 
-/* The slabs with cells that no run hides, for some phases of a tile: the
- * quantized values of their front resampled slices, front to back.  They are
+/* The slabs with cells that no interval hides, for some phases of a tile: the
+ * indices of their front resampled slices, front to back.  They are
  * found as far as they are needed, since rays may end before the last. */
 typedef struct value_list {
     const snow_value_splat *splat;
@@ -272,7 +272,7 @@ typedef struct value_list {
     int64_t begin[2]; /* cell of the masks that a place of 0 is in */
     int64_t last[2];  /* cell of the masks */
     int resampled;    /* the next one that is looked at */
-    unsigned before;  /* runs that do not hide the one before */
+    unsigned before;  /* intervals that do not hide it */
     int count;
     int32_t *slabs;
 } value_list;

@@ -96,8 +96,9 @@ static inline bool has_any(const uint64_t *coarse, size_t apart, const box *b) {
     return any != 0;
 }
 
-/* A bit for each run with cells that it does not hide, in a slice (of every
- * slice, or of each eight) and, for resampled slices between, in the next one.
+/* A bit for each interval with cells that it does not hide, in a slice (of
+ * every slice, or of each eight) and, for resampled slices between, in the next
+ * one.
  */
 static inline unsigned intervals_of(const value_list *of,
                                     const uint64_t *coarse, int64_t slices,

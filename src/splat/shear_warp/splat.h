@@ -1,14 +1,16 @@
 /* splat/shear_warp/splat.h - shear-warp's inner loops: resampled slices of
- * values are splatted tile by tile, coloured slab by slab, and composited.
+ * values are sampled tile by tile, coloured slab by slab, and composited.
  *
  * A tile is 30 x 32 cells of the lattice, one voxel wide each, over the whole
  * depth; a cell has one or more samples, the phases.  For each slab between two
  * resampled slices, front to back, and each phase:
  *
  *   masks   which samples of the slab can be seen, and something shines through
- *   sample  values of both resampled slices there and beside, differences
- * between slices queue   the samples that are visible, packed colour  by the
- * table of the slab, and light blend   behind what is in the tile
+ *   sample  the values of both resampled slices there and beside, and their
+ *           differences
+ *   queue   the samples that are visible, packed
+ *   colour  by the table of the slab, and light
+ *   blend   behind what is in the tile
  *
  * All instruction sets give the same bits. */
 #ifndef SNOW_SPLAT_SHEAR_WARP_SPLAT_H
@@ -42,7 +44,7 @@ typedef struct snow_value_place {
  * slice.  Lane n is between voxels first + at[n] and first + at[n] + 1; lane 0
  * is the cell before the first one of a tile. */
 #define SNOW_VALUE_LANES (SNOW_VALUE_ROWS + 2)
-#define SNOW_VALUE_WORDS 10 /* of a mask that 32 of them may need */
+#define SNOW_VALUE_MASK_WORDS 10 /* that 32 of them may need */
 /* The most times that samples of the last resampled slice are farther apart
  * than those of the first. */
 #define SNOW_VALUE_SPREAD_MOST 8
@@ -52,7 +54,7 @@ typedef struct snow_value_lanes {
     int16_t at[SNOW_VALUE_LANES], weight[SNOW_VALUE_LANES]; /* of 32768 */
     /* Their bits in words of a mask (encode/shear_warp/store.h), from `word`
      * on. */
-    uint32_t select[SNOW_VALUE_WORDS];
+    uint32_t select[SNOW_VALUE_MASK_WORDS];
 } snow_value_lanes;
 
 /* Perspective: how far apart samples are on a resampled slice. */
@@ -155,7 +157,7 @@ typedef struct snow_value_splat {
 } snow_value_splat;
 
 /* Pixels of a tile: planes of 15 bits, of which channels are used; of floats
- * where `floats` says so.  Extremes have their numbers in the
+ * where `floats` says so.  Extremes have quantized values in the
  * first plane, below 0 where there is none; sums 2 V in the first one, and the
  * lengths, in those that the table is for, in the last. */
 typedef int16_t snow_value_plane[4][SNOW_VALUE_ROWS][32];
@@ -171,14 +173,14 @@ static inline size_t snow_value_planes_bytes(const snow_value_splat *splat) {
 /* Bytes of a worker's memory. */
 size_t snow_value_splat_bytes(const snow_value_splat *splat);
 
-/* The slabs of a tile that have cells that no run hides, in perspective all:
- * the quantized values of their front resampled slices, front to back; returns
- * how many. */
+/* The slabs of a tile that have cells that no interval hides, in perspective
+ * all: the indices of their front resampled slices, front to back; returns how
+ * many. */
 int snow_value_list(const snow_value_splat *splat, const int tile[2],
                     int32_t *out);
 
 /* Draws tile (x, y); false: nothing is there.  `sloped`: with gradients, for
- * light or gradient opacity.  `room` is aligned to 64; the
+ * light or gradient opacity.  `scratch` is aligned to 64; the
  * planes of each phase are in it from its beginning on. */
 typedef bool snow_value_tile_fn(const snow_value_splat *splat, int x, int y,
                                 void *scratch);

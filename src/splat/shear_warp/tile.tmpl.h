@@ -22,14 +22,15 @@ TARGET VALUE_INLINE void NAME(sample)(const snow_value_splat *p, int n,
         NAME(sample_all)(p, n, phase, tile, rows, across, out);
 }
 
-/* Leaves out the samples whose front and back are in one invisible run. */
+/* Leaves out the samples whose front and back are in one transparent interval.
+ */
 TARGET VALUE_INLINE uint32_t NAME(see)(const snow_value_table *table,
                                        V(row) front, V(row) back) {
     V(row) low = V(row_min)(front, back), high = V(row_max)(front, back);
     uint32_t seen = ~UINT32_C(0);
-    for (int run = 0; run < table->interval_count; run++)
-        seen &= V(row_gt)(V(row_set1)(table->intervals[run].first), low) |
-                V(row_gt)(high, V(row_set1)(table->intervals[run].last));
+    for (int i = 0; i < table->interval_count; i++)
+        seen &= V(row_gt)(V(row_set1)(table->intervals[i].first), low) |
+                V(row_gt)(high, V(row_set1)(table->intervals[i].last));
     return seen;
 }
 
