@@ -166,7 +166,7 @@ def clamped(x):
 
 
 def turned(azimuth, elevation):
-    """The camera's up and back: docs/model.md, point 2."""
+    """The camera's up and back: docs/model.md, section 2."""
     ca, sa = math.cos(math.radians(azimuth)), math.sin(math.radians(azimuth))
     ce, se = (math.cos(math.radians(elevation)),
               math.sin(math.radians(elevation)))

@@ -267,7 +267,7 @@ static void set_view(double azimuth, double elevation) {
     const double radian = 0.017453292519943295769;
     double ca = cos(azimuth * radian), sa = sin(azimuth * radian);
     double ce = cos(elevation * radian), se = sin(elevation * radian);
-    /* Rows right, up, back: model.md, point 2. */
+    /* Rows right, up, back: model.md, section 2. */
     vpMatrix4 turn = {{ca, 0, -sa, 0},
                       {-se * sa, ce, -se * ca, 0},
                       {ce * sa, se, ce * ca, 0},

@@ -56,7 +56,7 @@ SNOW_API snow_status snow_ranks_new_transfer(snow_comm *comm,
     const snow_volume *volume, const snow_look *look, snow_transfer **out);
 
 /* Fits a view's target and zoom to what a look shows from each azimuth (NULL:
- * the view's; docs/model.md, point 2). Collective, unless `comm` is NULL. */
+ * the view's; docs/model.md, section 2). Collective, unless `comm` is NULL. */
 SNOW_API snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
     const snow_transfer *transfer, const snow_settings *settings,
     const double *azimuths, size_t count, snow_view *view);

@@ -1,8 +1,8 @@
 /* snowglass/view.h - the camera and the size of the image.
  *
  * The camera looks at the middle of the voxel boxes from a named side, turned
- * by angles; at zoom 1 all is in the picture (docs/model.md, point 2). Or place
- * it by points of the world (docs/output.md). */
+ * by angles; at zoom 1 all is in the picture (docs/model.md, section 2). Or
+ * place it by points of the world (docs/output.md). */
 #ifndef SNOWGLASS_VIEW_H
 #define SNOWGLASS_VIEW_H
 

@@ -2,7 +2,7 @@
  * patient lies.
  *
  * Radiologists read them before anything else.  Directions are those of the
- * camera, in the RAS world (model, points 1 and 2): the edge of the picture
+ * camera, in the RAS world (model, sections 1 and 2): the edge of the picture
  * towards the patient's left is labelled L. */
 #include "image/overlay.h"
 #include "transform/transform.h"

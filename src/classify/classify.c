@@ -1,5 +1,5 @@
 /* classify/classify.c - applies the transfer function: native value to sample
- * (model, points 3 and 6).
+ * (model, sections 3 and 6).
  *
  * A voxel is interesting when its opacity is above 0 and, for a threshold T >
  * 0, 255 a > T + 0.0001. Here a is the opacity before the correction for path

@@ -65,7 +65,7 @@ struct snow_classifier {
 /* Options of a classifier. */
 typedef struct snow_classify_options {
     double threshold;
-    double opacity_exponent; /* a' = 1 - (1 - a)^exponent (model, point 6) */
+    double opacity_exponent; /* a' = 1 - (1 - a)^exponent (model, section 6) */
     bool keep_all, premultiply;
     bool only_counts; /* samples are 0, but with a gradient opacity */
     snow_isa isa;     /* resolved, or AUTO for the plain loops */
@@ -159,7 +159,7 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
 void snow_shader_turn(snow_shader *shader, const double viewer[3]);
 
 /* Shades the samples of a row block (straight colours) and multiplies colour by
- * opacity (model, point 4). Samples of opacity 0 stay 0. */
+ * opacity (model, section 4). Samples of opacity 0 stay 0. */
 void snow_shade_row_block(const snow_shader *shader, int channels,
                           snow_row_block *row_block);
 

@@ -4,7 +4,7 @@
  *
  *   opacity = a(value) g(|gradient|)
  *
- * The gradient is that of shading (model, point 4), in data units per unit of
+ * The gradient is that of shading (model, section 4), in data units per unit of
  * world space: |slope| |W d| for differences d of native values, with W the
  * inverse transpose of the matrix' linear part. The product decides whether a
  * voxel is interesting. It is computed in double precision from a float a, so
@@ -55,7 +55,7 @@ void snow_gradient_opacity_factors(
     const snow_gradient_opacity_row *row, const uint32_t *columns, size_t count,
     double *factors);
 
-/* a' = 1 - (1 - a)^exponent in place (model, point 6). */
+/* a' = 1 - (1 - a)^exponent in place (model, section 6). */
 void snow_gradient_opacity_correct(
     const snow_gradient_opacity *gradient_opacity, double exponent,
     size_t count, double *opacities);

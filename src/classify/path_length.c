@@ -1,6 +1,6 @@
 /* classify/path_length.c - opacities and sums of a perspective view: each
- * voxel's own ray has its own length within the voxel's sheet (model, points 6
- * and 8). */
+ * voxel's own ray has its own length within the voxel's sheet (model, section
+ * 6). */
 #include "base/exp_log.h"
 #include "classify/classify.h"
 #include "transform/perspective.h"

@@ -188,7 +188,8 @@ snow_status snow_ranks_put_in_order(snow_ranks *ranks,
 snow_status snow_in_flight_capacity(snow_in_flight *in_flight,
                                     const snow_job *job, int layers);
 
-/* Collective.  The range of all parts into the frame's ramp. */
+/* Collective.  The range of all parts into the frame's identity transfer
+ * function. */
 snow_status snow_in_flight_agree_range(snow_in_flight *in_flight);
 
 /* Collective.  The range of all parts, for shear-warp. */

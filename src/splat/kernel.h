@@ -1,4 +1,5 @@
-/* splat/kernel.h - reconstruction kernels along one grid axis (model, point 7).
+/* splat/kernel.h - reconstruction kernels along one grid axis (model, section
+ * 7).
  *
  * A kernel b has a support of K voxels.  If a pixel is wider than a voxel, the
  * kernel is widened by a factor w (anti-aliasing after Swan et al. 1997):

@@ -71,7 +71,7 @@ int snow_transfer_slopes(const snow_transfer *transfer,
 #define SNOW_THRESHOLD_MARGIN 0.0001
 
 /* Returns whether a voxel of this opacity is above a threshold of 0 to 255
- * (model, point 3). */
+ * (model, section 3). */
 static inline bool snow_is_interesting(double opacity, double threshold) {
     return opacity > 0 && (!(threshold > 0) ||
                            255 * opacity > threshold + SNOW_THRESHOLD_MARGIN);

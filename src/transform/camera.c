@@ -1,5 +1,5 @@
-/* transform/camera.c - the camera of a view (model, point 2), given by name and
- * angles, or by points in world space.
+/* transform/camera.c - the camera of a view (model, section 2), given by name
+ * and angles, or by points in world space.
  *
  * All positions are relative to the target, which is shown in the middle of the
  * picture. */

@@ -67,8 +67,8 @@ snow_status snow_camera_make(snow_context *context,
                              const snow_volume_info *info,
                              const snow_view *view, snow_camera *out);
 
-/* Places a volume before a camera (model, points 2, 5 and 6). The slice axis is
- * the one whose slice normal is most parallel to the line of sight; within
+/* Places a volume before a camera (model, sections 2, 5 and 6). The slice axis
+ * is the one whose slice normal is most parallel to the line of sight; within
  * 1e-6, z before y before x. Errors: SNOW_STATUS_BAD_USAGE (the view),
  * SNOW_STATUS_BAD_INPUT (a geometry beyond the range of float). */
 snow_status snow_placement_make(snow_context *context,

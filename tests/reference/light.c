@@ -1,6 +1,6 @@
 /* tests/reference/light.c - Phong's model with the lights of a picture.
  *
- * docs/model.md, section 4, and section 7 of the value model. */
+ * docs/model.md, sections 4 and V6. */
 #include "reference/reference.h"
 
 #include <math.h>

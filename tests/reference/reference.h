@@ -66,9 +66,9 @@ double reference_dot(const double a[3], const double b[3]);
 /* Rows of the inverse of the matrix' linear part. */
 void reference_inverse(const double matrix[4][4], double inverse[3][3]);
 
-/* The index axis that slices are taken along (model, point 5), and how far the
- * ray through an index position runs from one slice to the next (d of point
- * 6). */
+/* The index axis that slices are taken along (model, section 5), and how far
+ * the ray through an index position runs from one slice to the next (d of
+ * section 6). */
 int reference_slice_axis(const reference_scene *scene,
                          const reference_camera *camera);
 double reference_slice_step(const reference_scene *scene,

@@ -1,5 +1,5 @@
 /* tests/render/test_darken.c - depth darkening and occlusion against their
- * formulas in float64 (docs/model.md, "The value model" 7). */
+ * formulas in float64 (docs/model.md, section 10). */
 #include "image/image.h"
 #include "reference/model.h"
 #include "support/support.h"

@@ -1,5 +1,5 @@
 /* classify/shading/gradient.c - gradients of native values in index space
- * (model, point 4), for each scalar type. */
+ * (model, section 4), for each scalar type. */
 #include "classify/classify.h"
 
 #include <math.h>

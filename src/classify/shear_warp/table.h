@@ -16,7 +16,7 @@
 #define SNOW_VALUE_ENTRIES 16
 
 /* The most quantized values from one node of a table to the next
- * (docs/model.md, The value model, point 5). */
+ * (docs/model.md, V4). */
 #define SNOW_VALUE_NODE_MOST 256
 
 /* An interval of quantized values whose slabs are all invisible. */

@@ -1,5 +1,5 @@
-/* render/modes/modes.h - pictures other than over (model, point 8): mip, minip,
- * mean, sum.
+/* render/modes/modes.h - pictures other than over (model, sections 9 and V10):
+ * mip, minip, mean, sum.
  *
  * They are over's pictures of another look.  The identity transfer function is
  * one whose grey is the data value itself, carried from the volume's own range

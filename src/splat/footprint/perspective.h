@@ -1,15 +1,16 @@
 /* splat/footprint/perspective.h - footprints in perspective: the product of a
  * voxel's two kernels, mapped by its slice's projective map to a quadrangle.
  * Footprints differ from voxel to voxel, so only the kernel is tabulated: the
- * picture is exact (model, point 7), not fast. */
+ * picture is exact (model, section 7), not fast. */
 #ifndef SNOW_SPLAT_FOOTPRINT_PERSPECTIVE_H
 #define SNOW_SPLAT_FOOTPRINT_PERSPECTIVE_H
 
 #include "splat/footprint/splat.h"
 #include "transform/perspective.h"
 
-/* The ray of a pixel: it meets a slice at height h above the eye (model, point
- * 2; transform/perspective.h) at eye + h slope; h has the sign of `side`. */
+/* The ray of a pixel: it meets a slice at height h above the eye (model,
+ * section 2; transform/perspective.h) at eye + h slope; h has the sign of
+ * `side`. */
 typedef struct snow_pixel_ray {
     double slope[2];
     double side; /* 1 or -1; 0: the ray is parallel to the slices */
