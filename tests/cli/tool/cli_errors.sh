@@ -221,7 +221,11 @@ done
 
 cp "$HERE/../fuzz/corpus/hdf5/latest" groups.h5
 printf '\0\0\0\0' | dd of=groups.h5 bs=1 seek=459 conv=notrunc 2>/dev/null
-refused 3 "damaged groups of HDF5" "^snowglass: groups.h5: " "$TOOL" info groups.h5
+if [ -n "${SNOW_SANITIZED-}" ]; then
+    skipped "damaged groups of HDF5" "libhdf5 leaks them where it may end"
+else
+    refused 3 "damaged groups of HDF5" "^snowglass: groups.h5: " "$TOOL" info groups.h5
+fi
 if "$TOOL" info "$HERE/../fuzz/corpus/dicom/jpeg_of_12_bits" >"$OUT" 2>"$ERR"; then
     check "12 bits need no word of a library" \
         [ "$(grep -vc '^snowglass: note: ' "$ERR")" = 0 ]
