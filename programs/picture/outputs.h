@@ -15,8 +15,8 @@ bool is_special(const char *path);
  * names none. */
 bool same_output(const char *a, const char *b);
 
-/* Refuses that with `fault`, if it is not NULL, and paths of which nobody can
- * say it.  Returns CONTINUE or an exit code. */
+/* Refuses paths that name one file with `fault`, if it is not NULL, and paths
+ * that cannot be compared.  Returns CONTINUE or an exit code. */
 int check_apart(const char *a, const char *b, const char *fault);
 
 /* Refuses a folder where a file is to be written, also one that is named with
@@ -40,10 +40,9 @@ int write_json(json_t *object, const char *path, bool overwrite);
 int write_text(const char *bytes, size_t count, const char *path,
                bool overwrite);
 
-/* Opens a file, which nobody else has open after an exec; a signal does no
- * harm. Returns -1 with errno where that fails, and what to do about it. */
+/* Opens a file, which programs that are started do not inherit; a signal does
+ * no harm.  Returns -1 with errno where that fails. */
 int open_bytes(const char *path, int how);
-const char *place_remedy(int number);
 
 /* Writes bytes to an open file, or in the place of those at `at`, or makes what
  * was written survive a power failure where that is possible.  A signal does no

@@ -109,7 +109,7 @@ static inline double snow_exp2(double x) {
     return part * snow_double_of((uint64_t)(int64_t)(above + 1023) << 52);
 }
 
-/* --- opacities of other lengths (model, section 6) --------------------------
+/* --- opacities of other lengths (model, section 6) ------------------------
  *
  * a' = 1 - (1 - a)^e = -(exp(e log(1 - a)) - 1): the logarithm belongs to the
  * voxel, the exponent to the view.  0 stays 0 and 1 stays 1, exactly. */

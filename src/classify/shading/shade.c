@@ -1,6 +1,5 @@
 /* classify/shading/shade.c - Phong's model on gradients of the native values,
- * for kept voxels only (the paper's outlook in section 6; model, section
- * 4).
+ * for kept voxels only (the paper's outlook in section 6; model, section 4).
  *
  *   colour = min(1, c (ambient + diffuse n.l) + specular (n.h)^shininess)
  *

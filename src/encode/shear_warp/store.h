@@ -73,9 +73,9 @@ typedef struct snow_value_store {
     uint32_t *masks; /* [interval][slice][word][row] */
     size_t mask_words, mask_rows;
     /* A bit for each SNOW_VALUE_COARSE rows of these; those of all slices lie
-     * together, for a tile looks at few words of them. */
-    uint64_t
-        *coarse; /* [interval][word][slice][row / SNOW_VALUE_COARSE / 64] */
+     * together, for a tile looks at few words of them:
+     * [interval][word][slice][row / SNOW_VALUE_COARSE / 64]. */
+    uint64_t *coarse;
     size_t coarse_words;
     uint64_t *eights; /* the same for each SNOW_VALUE_EIGHT slices */
     int64_t eight_count;
