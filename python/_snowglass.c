@@ -64,10 +64,20 @@ static PyObject *text(PyObject *module, PyObject *message) {
     return given ? message_text(given) : NULL;
 }
 
+/* A unit of length in picometres, 0 if it is none, and its usual name. */
+static PyObject *length_unit(PyObject *self, PyObject *unit) {
+    (void)self;
+    char name[16] = "";
+    const char *text = PyUnicode_AsUTF8AndSize(unit, NULL);
+    return text ? Py_BuildValue("ds", snow_unit_length(text, name), name)
+                : NULL;
+}
+
 static PyMethodDef functions[] = {
     METHOD("fail", fail, METH_VARARGS, "raises a status with its message"),
     METHOD("text", text, METH_O, "a message in words of Python"),
     METHOD("names", names_of, METH_O, "presets, colormaps, ..."),
+    METHOD("length_unit", length_unit, METH_O, "picometres, name"),
     METHOD("version", version, METH_NOARGS, "of the library"),
     METHOD("colormap_color", look_colormap_color, METH_O, "of maps of one"),
     {NULL, NULL, 0, NULL}};

@@ -34,6 +34,8 @@ typedef enum snow_type {
 SNOW_API size_t snow_type_size(snow_type type);
 SNOW_API const char *snow_type_name(snow_type type);
 SNOW_API snow_type snow_type_from_name(const char *name);
+/* Picometres in a unit of length of any spelling, and its name; 0: no length. */
+SNOW_API double snow_unit_length(const char *unit, char name[16]);
 
 /* A channel: colour, below 0: not said; data values to show, 0s: not said. */
 typedef struct snow_channel {
@@ -127,7 +129,6 @@ typedef size_t snow_read_at_fn(void *user, uint64_t at, void *bytes, size_t);
 SNOW_API snow_status snow_volume_open_with(snow_context *, const char *name,
     snow_read_at_fn *read_at, void *user, uint64_t size,
     const snow_volume_options *options, snow_volume **out);
-
 /* Over the caller's voxels, not copied. Of `info` dims, type, matrix (0s:
  * identity), slope (0: 1), intercept, medical, unit, modality, window,
  * hounsfield, eight_bits and whole count. */
@@ -135,7 +136,6 @@ SNOW_API snow_status snow_volume_wrap(snow_context *context,
     const snow_volume_info *info, const void *voxels, snow_volume **out);
 /* Promises that wrapped voxels stay, until called again: encodings are kept. */
 SNOW_API void snow_volume_freeze(snow_volume *volume);
-
 /* A test volume. `dims` NULL or 0s: its own size; `seed` moves random parts. */
 SNOW_API snow_status snow_volume_open_phantom(snow_context *context,
     const char *name, const int64_t dims[3], uint64_t seed, snow_volume **out);

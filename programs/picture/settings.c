@@ -11,11 +11,7 @@
 /* The length of a millimetre in the unit of the volume's world. */
 static int opacity_length(const options *opts, const snow_volume_info *info,
                           double *out) {
-    static const struct {
-        const char *unit;
-        double length;
-    } units[] = {{"", 1},     {"mm", 1},   {"um", 1e3},
-                 {"nm", 1e6}, {"m", 1e-3}, {"angstrom", 1e7}};
+    const double unit = snow_unit_length(*info->unit ? info->unit : "mm", NULL);
     *out = 0;
     /* A file of a transfer function may say so, but a recipe has priority. */
     const bool per_mm =
@@ -24,12 +20,10 @@ static int opacity_length(const options *opts, const snow_volume_info *info,
             : opts->opacity_unit && strcmp(opts->opacity_unit, "mm") == 0;
     if (!per_mm)
         return CONTINUE;
-    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
-        if (strcmp(units[i].unit, info->unit) == 0)
-            *out = units[i].length;
-    }
-    if (*out > 0)
+    if (unit > 0) {
+        *out = snow_unit_length("mm", NULL) / unit;
         return CONTINUE;
+    }
     return fail_usage("opacities per mm: the volume's unit '%s' is not a "
                       "length; give --config '{\"opacity-unit\": \"voxel\"}'",
                       info->unit);

@@ -5,7 +5,7 @@ import math
 import os
 from typing import Any, Mapping, NamedTuple, Optional, Sequence
 
-from . import _checks, _recipes
+from . import _checks, _recipes, _snowglass
 from ._warnings import warn
 
 
@@ -42,15 +42,6 @@ AFFINE = "a 4x4 matrix of finite numbers whose last row is 0, 0, 0, 1"
 #: Units of coordinates that grow downward, as in src/formats/cf.c.
 PRESSURES = ("pa", "hpa", "kpa", "bar", "mbar", "mb", "millibar", "millibars",
              "decibar", "dbar", "atm")
-
-#: Metres of a unit, whose words may end in s, as in src/formats/cf.c.
-LENGTHS = {
-    "m": 1, "meter": 1, "metre": 1, "km": 1e3, "kilometer": 1e3, "kilometre": 1e3,
-    "cm": 1e-2, "centimeter": 1e-2, "centimetre": 1e-2, "mm": 1e-3,
-    "millimeter": 1e-3, "millimetre": 1e-3, "um": 1e-6, "\u00b5m": 1e-6,
-    "\u03bcm": 1e-6, "micron": 1e-6, "micrometer": 1e-6, "micrometre": 1e-6,
-    "nm": 1e-9, "nanometer": 1e-9, "nanometre": 1e-9}
-
 
 
 def check_options(options: Mapping[str, Any]) -> None:
@@ -249,16 +240,12 @@ class _Coordinate(NamedTuple):
     given: bool = False
 
 
-def _metres(unit: str) -> float:
-    word = unit[:-1] if len(unit) > 4 and unit.endswith("s") else unit
-    return LENGTHS.get(word, 0.0)
-
-
 def _ratio(unit: str, other: str) -> float:
     """How many of the other unit one is; 0 if they cannot be compared."""
     if unit == other:
         return 1.0
-    return _metres(unit) / _metres(other) if _metres(other) else 0.0
+    one, another = (_snowglass.length_unit(each)[0] for each in (unit, other))
+    return one / another if another else 0.0
 
 
 def _coordinate(source: Any, name: str) -> _Coordinate:
@@ -269,7 +256,8 @@ def _coordinate(source: Any, name: str) -> _Coordinate:
     unit = str(attributes.get("units", ""))
     positive = str(attributes.get("positive", "")).lower()
     up = -1 if (positive == "down" if positive else unit.lower() in PRESSURES) else 1
-    unit = "degrees" if unit.startswith("degree") else unit
+    unit = "degrees" if unit.startswith("degree") else \
+        _snowglass.length_unit(unit)[1] or unit
     places = numpy.asarray(source.coords[name].values)
     if places.dtype.kind not in "iuf" or len(places) < 2:
         return _Coordinate(unit=unit)

@@ -7,7 +7,7 @@ import os
 import shlex
 from typing import Any, Mapping, Optional
 
-from . import _checks
+from . import _checks, _snowglass
 from ._looks import Look, look_of
 
 #: Keys of the data, as options of Volume.
@@ -32,8 +32,6 @@ USUAL = {"azimuth": 0, "elevation": 0, "roll": 0, "perspective": 0, "zoom": 1,
          "fit": "visible", "threads": 0, "opacity_length": 0}
 #: What Volume.slice takes, besides the look.
 SLICE = ("axis", "at", "size", "kernel", "legend", "letters", "threads")
-#: Lengths of a millimetre.
-UNITS = {"": 1.0, "mm": 1.0, "um": 1e3, "nm": 1e6, "m": 1e-3, "angstrom": 1e7}
 
 
 def _range_key(given: Any) -> Any:
@@ -136,10 +134,11 @@ def _overlay_look(text: str) -> Look:
 
 def length_of_mm(unit: str) -> float:
     """A millimetre in the unit of a volume's world."""
-    if unit not in UNITS:
+    one = _snowglass.length_unit(unit or "mm")[0]
+    if not one:
         raise ValueError(f"the volume's unit '{unit}' is not a length: use "
                          f"opacities per voxel")
-    return UNITS[unit]
+    return _snowglass.length_unit("mm")[0] / one
 
 
 def make(data: Optional[Mapping[str, Any]], unit: str, look: Look,
@@ -171,7 +170,7 @@ def make(data: Optional[Mapping[str, Any]], unit: str, look: Look,
         elif name == "size":
             value = [value, value] if not hasattr(value, "__len__") else value
         elif name == "opacity_length":
-            if value != UNITS.get(unit):
+            if value != length_of_mm(unit):
                 raise ValueError(f"opacity_length {value:g} is no recipe: it is "
                                  f"neither a voxel nor a millimetre")
             name, value = "opacity_unit", "mm"

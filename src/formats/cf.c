@@ -13,9 +13,13 @@ cf_values snow_cf_values_default(void) {
     return (cf_values){.scale = 1};
 }
 
-/* Degrees east and degrees north are one unit here; "m" and others stay. */
+/* Lengths get their usual names; degrees east and degrees north are one unit
+ * here; others stay. */
 static void take_unit(const char *text, char unit[64]) {
-    if (!strncmp(text, "degree", 6))
+    char name[16];
+    if (snow_unit_length(text, name) > 0)
+        text = name;
+    else if (!strncmp(text, "degree", 6))
         text = "degrees";
     size_t length = strlen(text) < 64 ? strlen(text) : 63;
     memcpy(unit, text, length);
@@ -34,29 +38,6 @@ static bool is_any_of(const char *text, const char *const *list) {
         if (is_same(text, *list))
             return true;
     return false;
-}
-
-/* The metres of a unit of length, whose words may end in s; else 0. */
-static double metres(const char *unit) {
-    static const struct {
-        const char *name;
-        double metres;
-    } lengths[] = {
-        {"m", 1},         {"meter", 1},         {"metre", 1},
-        {"km", 1e3},      {"kilometer", 1e3},   {"kilometre", 1e3},
-        {"cm", 1e-2},     {"centimeter", 1e-2}, {"centimetre", 1e-2},
-        {"mm", 1e-3},     {"millimeter", 1e-3}, {"millimetre", 1e-3},
-        {"um", 1e-6},     {"\302\265m", 1e-6},  {"\316\274m", 1e-6},
-        {"micron", 1e-6}, {"micrometer", 1e-6}, {"micrometre", 1e-6},
-        {"nm", 1e-9},     {"nanometer", 1e-9},  {"nanometre", 1e-9},
-    };
-    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
-        const size_t length = strlen(lengths[i].name);
-        if (!strncmp(unit, lengths[i].name, length) &&
-            (!unit[length] || (length > 3 && !strcmp(unit + length, "s"))))
-            return lengths[i].metres;
-    }
-    return 0;
 }
 
 snow_axis_hint snow_cf_hint(const cf_words *words) {
@@ -137,8 +118,9 @@ static void place_axis(snow_context *context, const cf_axis axes[3], int i,
     /* How many units of x one is; 0 if they cannot be compared. */
     const double times = !axis->given                   ? 0
                          : !strcmp(axis->unit, x->unit) ? 1
-                         : metres(x->unit) > 0
-                             ? metres(axis->unit) / metres(x->unit)
+                         : snow_unit_length(x->unit, NULL) > 0
+                             ? snow_unit_length(axis->unit, NULL) /
+                                   snow_unit_length(x->unit, NULL)
                              : 0;
     const bool same = times > 0;
     const double up = axis->down ? -1 : 1;

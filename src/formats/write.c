@@ -25,6 +25,25 @@ static snow_status write_swapped(const unsigned char *at, size_t bytes,
     return SNOW_STATUS_OK;
 }
 
+snow_volume_info snow_write_in_units(const snow_volume_info *info,
+                                     const char *const *units) {
+    snow_volume_info out = *info;
+    const double unit = snow_unit_length(info->unit, NULL);
+    const double factor = unit / snow_unit_length("mm", NULL);
+    for (; *units; units++)
+        if (strcmp(info->unit, *units) == 0)
+            return out;
+    if (!(unit > 0))
+        return out;
+    for (int i = 0; i < 3; i++) {
+        out.spacing[i] *= factor;
+        for (int j = 0; j < 4; j++)
+            out.matrix[i][j] *= factor;
+    }
+    memcpy(out.unit, "mm", 3);
+    return out;
+}
+
 /* Straight from the volume on little-endian machines: no copy of what may be
  * gigabytes.  Part by part, so that a stop does not wait for all of it; row by
  * row where rows lie apart. */

@@ -15,6 +15,11 @@ snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer);
 int snow_print_numbers(char *text, size_t capacity, const double *values,
                        int count, const char *between);
 
+/* The info with lengths in a unit that the format can name: its own, if that is
+ * among `units` (ended by NULL) or is no length, else millimetres. */
+snow_volume_info snow_write_in_units(const snow_volume_info *info,
+                                     const char *const *units);
+
 /* Writes as a snow_format does. Errors: SNOW_STATUS_BAD_USAGE when the format
  * cannot say what the volume is (a scaling of values, say), those of the
  * writer. */

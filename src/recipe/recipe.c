@@ -246,17 +246,10 @@ snow_status snow_recipe_get_view(snow_context *context,
     return SNOW_RECORD_FILL(context, snow_view, &view, out);
 }
 
-/* Millimetres in a unit of length; 0 if it is not a length. */
+/* The length of a millimetre in a unit; 0 if that is no length. */
 static double length_of_mm(const char *unit) {
-    static const struct {
-        const char *unit;
-        double length;
-    } units[] = {{"", 1},     {"mm", 1},   {"um", 1e3},
-                 {"nm", 1e6}, {"m", 1e-3}, {"angstrom", 1e7}};
-    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-        if (strcmp(units[i].unit, unit) == 0)
-            return units[i].length;
-    return 0;
+    const double length = snow_unit_length(*unit ? unit : "mm", NULL);
+    return length > 0 ? snow_unit_length("mm", NULL) / length : 0;
 }
 
 snow_status snow_recipe_get_settings(snow_context *context,

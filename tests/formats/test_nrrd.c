@@ -313,7 +313,31 @@ static void other_worlds_are_not_medical(void **state) {
                  RAW "space: 3D-left-handed\nspacings: 1 2 3\nunits: \"\" "
                      "\"nm\" \"\"\nspace origin: (1,1,1)\n\n",
                  (double[]){1, 0, 0, 1, 0, 2, 0, 1, 0, 0, -3, -1});
-    assert_int_equal(support_warned(files), 1);
+    /* The world is left-handed, and two axes have no unit. */
+    assert_int_equal(support_warned(files), 3);
+}
+
+/* Format.html of teem: units belong to spacings, space units to directions and
+ * the origin. */
+static void axes_in_several_units_are_brought_into_one(void **state) {
+    support_files *files = *state;
+    const double rows[] = {.2, 0, 0, 0, 0, .2, 0, 0, 0, 0, .8, 0};
+    expect_place(files, "um",
+                 RAW "spacings: 0.2 0.2 800\nunits: \"\xc2\xb5m\" \"microns\" "
+                     "\"nm\"\n\n",
+                 rows);
+    expect_place(files, "um",
+                 RAW
+                 "space dimension: 3\nspace directions: (0.2,0,0) (0,2e-4,0)"
+                 " (0,0,800)\nspace origin: (1,0.002,3000)\nspace units: "
+                 "\"Micrometer\" \"mm\" \"nm\"\n\n",
+                 (double[]){.2, 0, 0, 1, 0, .2, 0, 2, 0, 0, .8, 3});
+    assert_int_equal(support_warned(files), 0);
+    expect_place(files, "um",
+                 RAW "spacings: 0.2 0.2 0.8\nunits: \"um\" \"um\" \"furlong\""
+                     "\n\n",
+                 rows);
+    assert_non_null(strstr(files->warnings, "furlong"));
 }
 
 static void fewer_axes_than_three_are_filled_up(void **state) {
@@ -874,6 +898,7 @@ int main(void) {
         SUPPORT_TEST(text_that_is_no_number_of_the_type_is_refused),
         SUPPORT_TEST(spaces_are_turned_to_ras),
         SUPPORT_TEST(other_worlds_are_not_medical),
+        SUPPORT_TEST(axes_in_several_units_are_brought_into_one),
         SUPPORT_TEST(fewer_axes_than_three_are_filled_up),
         SUPPORT_TEST(axes_may_be_told_by_their_ends),
         SUPPORT_TEST(the_users_spacing_replaces_the_files),

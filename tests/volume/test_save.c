@@ -3,6 +3,7 @@
 #include "support/files.h"
 #include "volume/volume.h"
 
+#include <math.h>
 #include <unistd.h>
 
 /* An oblique patient's matrix, of numbers that no float holds. */
@@ -107,6 +108,30 @@ static void what_is_no_patient_stays_none(void **state) {
         assert_false(snow_volume_get_info(back)->medical);
         support_same_matrix(snow_volume_get_info(back)->matrix, matrix,
                             i % 2 ? 1e-5 : 0);
+        snow_volume_close(back);
+        snow_volume_close(volume);
+    }
+}
+
+/* MetaImage names um, mm and cm, NIfTI m, mm and um: lengths in others become
+ * those. */
+static void lengths_survive_in_formats_without_their_unit(void **state) {
+    support_files *place = *state;
+    static const double nine[4][4] = {
+        {9, 0, 0, 0}, {0, 9, 0, 0}, {0, 0, 9, 0}, {0, 0, 0, 1}};
+    static const struct {
+        const char *unit;
+        double mm;
+    } units[] = {{"nm", 1e-6}, {"um", 1e-3}, {"cm", 10}, {"m", 1e3}};
+    for (size_t i = 0; i < 8; i++) {
+        const char *path = support_path(place, i % 2 ? "a.nii" : "a.mha");
+        snow_volume *volume = make_volume(place, SNOW_TYPE_UINT8, false, nine);
+        strcpy(volume->info.unit, units[i / 2].unit);
+        save(place, volume, path);
+        snow_volume *back = support_opened(place, path, NULL);
+        const snow_volume_info *info = snow_volume_get_info(back);
+        assert_string_equal(info->unit, "mm");
+        assert_true(fabs(info->spacing[2] / (9 * units[i / 2].mm) - 1) < 1e-6);
         snow_volume_close(back);
         snow_volume_close(volume);
     }
@@ -277,6 +302,7 @@ int main(void) {
         UNIT(every_format_keeps_every_type_and_the_matrix),
         UNIT(raw_keeps_every_type_when_told_what_it_is),
         UNIT(what_is_no_patient_stays_none),
+        UNIT(lengths_survive_in_formats_without_their_unit),
         UNIT(scaling_survives_or_is_refused),
         UNIT(what_nifti_1_cannot_hold_becomes_nifti_2),
         UNIT(the_same_volume_gives_the_same_bytes),

@@ -348,18 +348,16 @@ static snow_status read_spacing(snow_context *context, const fields *f,
                              "one length above 0 for each axis");
 }
 
-/* Millimetres per unit; a missing unit and "?" count as mm. */
-static snow_status read_unit(snow_context *context, const fields *f,
-                             double *millimetres) {
+/* Millimetres per unit; a missing unit and "?" count as mm, as ITK has it. */
+static double read_unit(snow_context *context, const fields *f) {
     const char *unit = f->value[UNITS];
-    *millimetres = 1;
-    if (strcmp(unit, "um") == 0)
-        *millimetres = 0.001;
-    else if (strcmp(unit, "cm") == 0)
-        *millimetres = 10;
-    else if (*unit && strcmp(unit, "mm") != 0 && strcmp(unit, "?") != 0)
-        return fail_value(context, f, UNITS, "one of um, mm, cm and ?");
-    return SNOW_STATUS_OK;
+    const double length = snow_unit_length(unit, NULL);
+    if (!(length > 0) && *unit && strcmp(unit, "?") != 0)
+        snow_notify(context,
+                    "its DistanceUnits, \"%.40s\", is not known; mm are "
+                    "assumed; --spacing sets others",
+                    unit);
+    return length > 0 ? length / snow_unit_length("mm", NULL) : 1;
 }
 
 /* Two conversions at once: from directions in rows to the columns of a matrix,
@@ -368,12 +366,12 @@ static snow_status read_geometry(snow_context *context, const fields *f,
                                  metaimage_header *header) {
     int axes = header->axes;
     /* Directions come as one group of `axes` numbers per index axis. */
-    double spacing[4] = {1, 1, 1, 1}, offset[4] = {0}, millimetres;
+    double spacing[4] = {1, 1, 1, 1}, offset[4] = {0};
+    const double millimetres = read_unit(context, f);
     double directions[16] = {0};
     for (int i = 0; i < axes; i++)
         directions[i * axes + i] = 1;
     SNOW_TRY(read_spacing(context, f, axes, spacing));
-    SNOW_TRY(read_unit(context, f, &millimetres));
     if (f->key[OFFSET] && !parse_numbers(f->value[OFFSET], axes, offset))
         return fail_value(context, f, OFFSET, "one number for each axis");
     if (f->key[DIRECTIONS] &&

@@ -32,7 +32,7 @@ static int print_geometry(char *text, size_t capacity,
         print_line(text + used, capacity - (size_t)used, "Offset", origin, 3);
     used += print_line(text + used, capacity - (size_t)used, "ElementSpacing",
                        info->spacing, 3);
-    /* The units that MetaImage can name; others count as mm. */
+    /* A missing unit counts as mm. */
     if (strcmp(info->unit, "um") == 0 || strcmp(info->unit, "cm") == 0)
         used += snprintf(text + used, capacity - (size_t)used,
                          "DistanceUnits = %s\n", info->unit);
@@ -55,7 +55,9 @@ static int print_scaling(char *text, size_t capacity,
 snow_status snow_metaimage_write(const snow_volume *volume, const char *path,
                                  snow_writer *writer) {
     (void)path;
-    const snow_volume_info *info = &volume->info;
+    static const char *const units[] = {"um", "mm", "cm", NULL};
+    const snow_volume_info of_units = snow_write_in_units(&volume->info, units),
+                           *info = &of_units;
     char text[2048];
     int used = snprintf(text, sizeof text,
                         "ObjectType = Image\n"

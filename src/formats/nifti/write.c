@@ -69,7 +69,7 @@ static unsigned unit_code(const char *unit) {
         return 2;
     if (strcmp(unit, "m") == 0)
         return 1;
-    if (strcmp(unit, "um") == 0 || strcmp(unit, "micron") == 0)
+    if (strcmp(unit, "um") == 0)
         return 3;
     return 0;
 }
@@ -132,10 +132,11 @@ static size_t fill_version2(header *h, const snow_volume_info *info) {
 snow_status snow_nifti_write(const snow_volume *volume, const char *path,
                              snow_writer *writer) {
     (void)path;
+    static const char *const units[] = {"m", "mm", "um", NULL};
+    const snow_volume_info info = snow_write_in_units(&volume->info, units);
     header h = {0};
-    size_t size = fits_version1(&volume->info)
-                      ? fill_version1(&h, &volume->info)
-                      : fill_version2(&h, &volume->info);
+    size_t size = fits_version1(&info) ? fill_version1(&h, &info)
+                                       : fill_version2(&h, &info);
     SNOW_TRY(snow_writer_write(writer, h.bytes, size));
     return snow_write_voxels(volume, writer);
 }

@@ -10,6 +10,7 @@
  *   sizes 1 64 64 20 5, kinds stub domain domain domain time
  *         -  x  y  z t */
 #include "formats/nrrd/nrrd.h"
+#include "volume/length_unit.h"
 
 #include <math.h>
 #include <string.h>
@@ -148,6 +149,29 @@ static void fill_matrix(const nrrd_header *header, const axis_choice *choice,
     }
 }
 
+/* The space's units have priority over the axes', as directions over spacings.
+ * Medical spaces are in millimetres by default. */
+static void take_units(snow_context *context, const nrrd_header *header,
+                       const axis_choice *choice, snow_volume_info *info) {
+    const bool of_space = header->space_unit_count > 0;
+    const char *texts[3] = {NULL};
+    double factors[3];
+    for (int i = 0; i < 3; i++)
+        if (of_space && i < header->space_unit_count)
+            texts[i] = header->space_units[i];
+        else if (!of_space && i < choice->spaces)
+            texts[i] = header->axes[choice->space[i]].unit;
+    snow_length_join(context, texts, factors, info->unit);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            info->matrix[i][j] *= factors[of_space ? i : j];
+        if (of_space || !header->directions)
+            info->matrix[i][3] *= factors[i];
+    }
+    if (!*info->unit && header->medical)
+        memcpy(info->unit, "mm", 3);
+}
+
 /* The channel or component of the options. */
 static snow_status lay_values(snow_context *context, const nrrd_header *header,
                               int axis, const snow_volume_options *options,
@@ -189,12 +213,12 @@ snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
     SNOW_TRY(choose_axes(context, header, &choice));
     info->type = header->type;
     info->medical = header->medical;
-    memcpy(info->unit, header->unit, sizeof info->unit);
     for (int i = 0; i < choice.spaces; i++)
         info->dims[i] = header->axes[choice.space[i]].size;
     if (choice.time >= 0)
         info->times = header->axes[choice.time].size;
     fill_matrix(header, &choice, info->matrix);
+    take_units(context, header, &choice, info);
     SNOW_TRY(snow_volume_info_check(context, info));
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
     if (choice.values < 0)

@@ -6,6 +6,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define WORD_BYTES 64
@@ -411,41 +412,27 @@ static snow_status parse_directions(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* Copies the first quoted string that is not empty, as far as it is ASCII; the
- * micro sign becomes a u. */
-static void copy_unit(const char *value, char unit[16]) {
-    const char *end;
-    for (; (value = strchr(value, '"')); value = end + 1) {
-        end = strchr(++value, '"');
-        if (!end)
-            return;
-        if (end > value)
-            break;
-    }
-    if (!value)
-        return;
-    size_t used = 0;
-    static const char *const micro[] = {"\xc2\xb5", "\xce\xbc"};
-    if (!strncmp(value, micro[0], 2) || !strncmp(value, micro[1], 2)) {
-        unit[used++] = 'u';
-        value += 2;
-    }
-    for (; value < end && used < 15; value++)
-        if (isprint((unsigned char)*value))
-            unit[used++] = *value;
-    unit[used] = 0;
+/* Copies the next quoted string, as far as it has room. */
+static bool next_unit(const char **at, char unit[16]) {
+    const char *from = strchr(*at, '"');
+    const char *end = from ? strchr(from + 1, '"') : NULL;
+    if (!end)
+        return false;
+    snprintf(unit, 16, "%.*s", (int)(end - from < 16 ? end - from - 1 : 15),
+             from + 1);
+    *at = end + 1;
+    return true;
 }
 
-/* The space's unit has priority over the axes', as directions over spacings.
- * Medical spaces are in millimetres by default. */
-static void parse_unit(const nrrd_text *text, nrrd_header *out) {
-    const char *value = snow_nrrd_value(text, NRRD_SPACE_UNITS);
-    if (!value)
-        value = snow_nrrd_value(text, NRRD_UNITS);
-    if (value)
-        copy_unit(value, out->unit);
-    if (!*out->unit && out->medical)
-        strcpy(out->unit, "mm");
+static void parse_units(const nrrd_text *text, nrrd_header *out) {
+    const char *at = snow_nrrd_value(text, NRRD_SPACE_UNITS);
+    while (at && out->space_unit_count < 4 &&
+           next_unit(&at, out->space_units[out->space_unit_count]))
+        out->space_unit_count++;
+    at = snow_nrrd_value(text, NRRD_UNITS);
+    for (int i = 0; at && i < out->dimension; i++)
+        if (!next_unit(&at, out->axes[i].unit))
+            break;
 }
 
 /* -1 cannot be counted back in a text of numbers.  Teem knows no other negative
@@ -493,6 +480,6 @@ snow_status snow_nrrd_parse_header(snow_context *context, const nrrd_text *text,
     SNOW_TRY(parse_world(context, text, out, &dimension));
     SNOW_TRY(parse_directions(context, text, dimension, out));
     SNOW_TRY(parse_skips(context, text, out));
-    parse_unit(text, out);
+    parse_units(text, out);
     return SNOW_STATUS_OK;
 }

@@ -92,6 +92,7 @@ typedef struct nrrd_axis {
     double direction[4]; /* world step; the 4th is time */
     bool directed;       /* has a direction */
     nrrd_role role;
+    char unit[16]; /* of its spacing, as the file has it; or "" */
 } nrrd_axis;
 
 typedef struct nrrd_header {
@@ -104,7 +105,8 @@ typedef struct nrrd_header {
     double origin[4]; /* 0 if not given */
     double turn[3];   /* 1 or -1: converts world axes to right-handed or RAS+ */
     bool medical;
-    char unit[16];
+    char space_units[4][16]; /* of the world's axes, as the file has them */
+    int space_unit_count;    /* 0: not given */
     uint64_t line_skip;
     int64_t byte_skip; /* -1: the data are the last bytes */
 } nrrd_header;

@@ -6,6 +6,7 @@
  * the last one on, x, y, z, time, or x, y, z, channel, time. */
 #include "formats/array.h"
 #include "formats/zarr/zarr.h"
+#include "volume/length_unit.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -237,47 +238,18 @@ static snow_status transform(const zarr_store *store, const zarr_array *array,
     return SNOW_STATUS_OK;
 }
 
-/* Metres in a unit of length by its UDUNITS-2 name, which OME-NGFF uses, and
- * our name for it; NULL for others. */
-static const char *unit_name(const char *unit, double *metres) {
-    static const struct {
-        const char *name, *own;
-        double metres;
-    } units[] = {
-        {"angstrom", "angstrom", 1e-10}, {"picometer", "pm", 1e-12},
-        {"nanometer", "nm", 1e-9},       {"micrometer", "um", 1e-6},
-        {"micron", "um", 1e-6},          {"millimeter", "mm", 1e-3},
-        {"centimeter", "cm", 1e-2},      {"meter", "m", 1},
-        {"kilometer", "km", 1e3},
-    };
-    for (size_t i = 0; unit && i < sizeof units / sizeof *units; i++)
-        if (!strcmp(unit, units[i].name) || !strcmp(unit, units[i].own)) {
-            *metres = units[i].metres;
-            return units[i].own;
-        }
-    return NULL;
-}
-
-/* All lengths in the unit of x, or else of the first axis that has one. */
-static void take_units(const zarr_found *found, const zarr_roles *roles,
-                       double factor[3], snow_volume_info *info) {
+static void take_units(const zarr_store *store, const zarr_found *found,
+                       const zarr_roles *roles, double factors[3],
+                       snow_volume_info *info) {
     const json_t *axes = json_object_get(found->image, "axes");
-    double first = 0;
+    const char *texts[3] = {NULL};
     for (int role = ZARR_X; role <= ZARR_Z; role++) {
-        double metres = 0;
-        factor[role] = 1;
-        if (roles->axis[role] < 0)
-            continue;
         const json_t *axis = json_array_get(axes, (size_t)roles->axis[role]);
         const char *unit = json_string_value(json_object_get(axis, "unit"));
-        const char *own = unit_name(unit, &metres);
-        if (!*info->unit && unit)
-            snprintf(info->unit, sizeof info->unit, "%.15s", own ? own : unit);
-        if (!(first > 0))
-            first = metres;
-        if (metres > 0)
-            factor[role] = metres / first;
+        if (roles->axis[role] >= 0)
+            texts[role] = unit ? unit : "";
     }
+    snow_length_join(store->context, texts, factors, info->unit);
 }
 
 /* Before version 0.4 resolution levels have no scale: it is the ratio of their
@@ -313,7 +285,7 @@ static snow_status compare_sizes(const zarr_store *store,
 snow_status snow_zarr_place(const zarr_store *store, const zarr_found *found,
                             const zarr_roles *roles, snow_volume_info *info) {
     placement place = {.given = false};
-    double factor[3];
+    double factors[3];
     if (!found->image)
         return SNOW_STATUS_OK;
     for (int i = 0; i < ZARR_MOST_AXES; i++)
@@ -322,14 +294,14 @@ snow_status snow_zarr_place(const zarr_store *store, const zarr_found *found,
     if (!place.given)
         SNOW_TRY(compare_sizes(store, found, &place));
     SNOW_TRY(transform(store, &found->array, found->image, &place));
-    take_units(found, roles, factor, info);
+    take_units(store, found, roles, factors, info);
     for (int role = ZARR_X; role <= ZARR_Z; role++) {
         int axis = roles->axis[role];
         /* A 2-D image is as deep as its pixels are wide. */
-        info->matrix[role][role] = axis >= 0 ? place.scale[axis] * factor[role]
+        info->matrix[role][role] = axis >= 0 ? place.scale[axis] * factors[role]
                                              : fabs(info->matrix[0][0]);
         info->matrix[role][3] =
-            axis >= 0 ? place.shift[axis] * factor[role] : 0;
+            axis >= 0 ? place.shift[axis] * factors[role] : 0;
     }
     snow_image_turn(info->matrix);
     return SNOW_STATUS_OK;
