@@ -4,6 +4,7 @@
 #define SNOWGLASS_EXTEND_H
 
 #include <snowglass/ranks.h>
+#include <stdarg.h>
 
 /* Leaves the message of a failure and returns `status`; gives a warning. Text
  * as of printf, one line without its end, which the last function makes it. */
@@ -12,7 +13,12 @@ SNOW_API snow_status snow_context_fail(snow_context *context,
 SNOW_API void snow_context_warn(snow_context *context, const char *format, ...)
     SNOW_PRINTF(2, 3);
 SNOW_API void snow_text_to_line(char *text, size_t capacity);
-
+/* snprintf, vsnprintf and sscanf whose numbers have a point in all locales. */
+SNOW_API int snow_text_print(char *text, size_t capacity, const char *format,
+    ...) SNOW_PRINTF(3, 4);
+SNOW_API int snow_text_vprint(
+    char *text, size_t capacity, const char *format, va_list arguments);
+SNOW_API int snow_text_scan(const char *text, const char *format, ...);
 /* A block of the context's memory, aligned to 64, or NULL and a message;
  * `release` accepts NULL. `reserve` makes the block in *block_pointer, or a new
  * one, hold `count` items, the first `keep` as they were. The limit (0). */
@@ -39,7 +45,6 @@ SNOW_API snow_status snow_record_fill(snow_context *context, const char *name,
         snow_record_read((context), #record, (given), (copy), sizeof *(copy)))
 #define SNOW_RECORD_FILL(context, record, made, out) \
     snow_record_fill((context), #record, (made), sizeof *(made), (out))
-
 /* A message in flight. `handle` belongs to the transport: NULL once it is done;
  * `bytes` of a received one is then its length. */
 typedef struct snow_message {
@@ -95,7 +100,6 @@ SNOW_API snow_status snow_comm_reduce_doubles(
 static inline int64_t snow_box_voxels(const snow_box *box) {
     return box->count[0] * box->count[1] * box->count[2];
 }
-
 /* What two boxes share; false, and *out untouched, where that is nothing. */
 SNOW_API bool snow_box_intersect(
     const snow_box *a, const snow_box *b, snow_box *out);
@@ -105,7 +109,6 @@ typedef struct snow_brick {
     const void *voxels;
     int64_t stride[3];
 } snow_brick;
-
 /* Copies the part of a brick in `box`, which lies in `whole`, to its place in
  * the dense box `whole` (x fastest), values of 1, 2, 4 or 8 bytes. */
 SNOW_API void snow_brick_copy(const snow_brick *brick, size_t value,
@@ -129,13 +132,11 @@ SNOW_API snow_status snow_voxels_plan(snow_voxels *voxels, const snow_box *held,
     int count, const snow_box *wanted);
 SNOW_API snow_status snow_voxels_move(
     snow_voxels *voxels, const snow_brick *bricks, size_t value, void *dense);
-
 /* Lets rows and slices of wrapped voxels lie apart. */
 SNOW_API void snow_volume_set_pitch(snow_volume *, const int64_t pitch[2]);
 /* Gives a part the matrix of its whole, exactly; a whole the given matrix. */
 SNOW_API snow_status snow_volume_set_whole(
     snow_volume *volume, const snow_volume_info *whole);
-
 /* Of the parts of a volume. */
 typedef struct snow_ranks_needs {
     size_t size;
@@ -148,7 +149,6 @@ SNOW_RECORD(snow_ranks_needs);
 SNOW_API snow_status snow_ranks_find_needs(snow_context *,
     const snow_volume_info *whole, const snow_view *, const snow_settings *,
     const snow_look *, snow_ranks_needs *out);
-
 /* Whether disjoint boxes have an order from front to back. Errors: as above. */
 SNOW_API snow_status snow_ranks_have_order(snow_context *,
     const snow_volume_info *, const snow_view *, const snow_box *, int count,

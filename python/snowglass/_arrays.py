@@ -86,7 +86,14 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
                  "axes= says so, or 'zyx'")
         axes, unit = "xyz", "mm" if unit is None else unit
         medical = True if medical is None else medical
+    elif axes is None and _is_fortran(array):
+        warn("an array in Fortran order is taken for [z, y, x]: of an image of "
+             "nibabel, whose order is [x, y, z], give the image itself, or "
+             "affine=image.affine; axes='xyz' or 'zyx' says which it is")
     axes = axes or "zyx"
+    if isinstance(axes, str) and len(axes) > 3:
+        raise ValueError(f"axes={axes!r}: a volume has x, y and z; choose one of the "
+                         f"others first, such as array[0], and give axes='zyx'")
     if sorted(_checks.text("axes", axes, AXES) or "") != ["x", "y", "z"]:
         raise _checks.fault("axes", AXES, axes, ValueError)
     array = _without_ones(array, axes)
@@ -119,8 +126,12 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
 
 
 def _is_fortran(array: Any) -> bool:
-    return bool(array.ndim >= 3 and array.flags.f_contiguous and
-                not array.flags.c_contiguous)
+    """Whether the first dimension is the fastest, as of nibabel's data and of
+    parts of them."""
+    steps = [abs(step) for step, size in zip(array.strides, array.shape)
+             if size > 1]
+    return array.ndim >= 3 and len(steps) > 1 and steps == sorted(steps) and \
+        steps[0] < steps[-1]
 
 
 def _without_ones(array: Any, axes: str) -> Any:
@@ -151,7 +162,7 @@ def like(source: Any, shape: Sequence[int], order: Sequence[int],
     import numpy
     if _is_nibabel(source):
         source = source.dataobj
-    array = numpy.asarray(source)
+    array = _to_array(source)
     if array.shape != tuple(shape):
         raise ValueError(f"{what} of shape {array.shape} for a volume of shape "
                          f"{tuple(shape)}: they must be the same")
@@ -169,7 +180,9 @@ def _affine_in_mm(image: Any) -> Any:
     import numpy
     units = getattr(image.header, "get_xyzt_units", lambda: ("mm",))()
     factor = {"meter": 1000.0, "micron": 0.001}.get(str(units[0]), 1.0)
-    return numpy.diag([factor, factor, factor, 1]) @ image.affine
+    matrix = numpy.diag([*image.header.get_zooms()[:3], 1.0]) \
+        if image.affine is None else image.affine
+    return numpy.diag([factor, factor, factor, 1]) @ matrix
 
 
 def _stored_values(data: Any) -> tuple[Any, float, float]:
@@ -210,7 +223,11 @@ def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
     if spacing is None and affine is None and len(names) == 3:
         affine, found = _place_of(source, dict(zip(axes, names)))
         unit = unit or found
-    return source.values, spacing, axes, unit, affine
+    for name in names[:-2]:
+        if name == "time" or source[name].dtype.kind in "mM":
+            warn(f"dimension '{name}' is drawn as a direction of space: "
+                 f".isel({name}=0) chooses one step")
+    return source, spacing, axes, unit, affine
 
 
 def _place_of(source: Any, names: Mapping[str, str]) -> tuple[Any, str]:
@@ -289,19 +306,18 @@ def _first_path(group: Any, deep: int = 4) -> str:
 
 def _to_array(source: Any) -> Any:
     import numpy
-    given: Any = source
-    if isinstance(source, numpy.ma.MaskedArray):
-        wide = numpy.float32 if source.dtype.itemsize < 4 else numpy.float64
-        filled: Any = given.astype(wide).filled(numpy.nan)
-        return filled
-    if isinstance(source, numpy.ndarray):
-        return source
+    array = _computed(source)
+    if isinstance(array, numpy.ma.MaskedArray):
+        if not array.mask.any():
+            return array.data
+        wide = array.dtype if array.dtype.kind == "f" else \
+            numpy.float32 if array.dtype.itemsize < 4 else numpy.float64
+        kept: Any = array.astype(wide)
+        return kept.filled(numpy.nan)
+    if isinstance(array, numpy.ndarray):
+        return array
     kind = type(source).__name__
-    if hasattr(source, "keys"):  # a group of HDF5 or Zarr, a Dataset, an .npz
-        names = _volumes_first(source)
-        raise TypeError(f"a {kind} holds several arrays: choose one of them, "
-                        f"such as {kind.lower()}[{_first_path(source)!r}] "
-                        f"(there are {', '.join(names[:9]) or 'none'})")
+    _refuse_others(source, kind)
     if hasattr(source, "__dlpack__") and not hasattr(source, "__array__"):
         try:
             return numpy.from_dlpack(source)
@@ -312,16 +328,61 @@ def _to_array(source: Any) -> Any:
     if hasattr(source, "__array__") or hasattr(source, "__array_interface__") \
             or hasattr(source, "__dlpack__"):
         return numpy.asarray(source)
+    if isinstance(source, (list, tuple)):
+        try:
+            return numpy.asarray(source)
+        except ValueError:
+            raise ValueError(f"a {kind} whose parts differ in shape is no volume: "
+                             f"give slices of one shape") from None
+    try:
+        return numpy.asarray(memoryview(source))
+    except (TypeError, ValueError, BufferError):
+        raise TypeError(f"a volume must be a path, an array, or an image of "
+                        f"nibabel or xarray, not {kind}") from None
+
+
+def _computed(source: Any) -> Any:
+    """The array of numpy, perhaps masked, that an array of dask or xarray, a
+    variable of netCDF4, or a list of any arrays stands for; others as they are.
+    numpy.asarray() would drop the masks."""
+    import numpy
+    masked: Any = numpy.ma
+    if _is_xarray(source):
+        return _computed(source.data) if hasattr(source.data, "dask") else \
+            source.values
+    if hasattr(source, "compute") and hasattr(source, "dask"):
+        return source.compute()
+    if hasattr(type(source), "set_auto_mask") and hasattr(type(source), "dtype"):
+        return source[...]  # masks and scales itself
+    if isinstance(source, (list, tuple)) and source and all(
+            hasattr(each, "__array__") or hasattr(each, "__array_interface__")
+            for each in source):
+        parts = [masked.asanyarray(_computed(each)) for each in source]
+        if len({part.shape for part in parts}) == 1:
+            return masked.stack(parts)
+    return source
+
+
+def _refuse_others(source: Any, kind: str) -> None:
+    """What has arrays, or resembles one, and is none."""
+    group = source if hasattr(type(source), "keys") or \
+        not hasattr(type(source), "variables") \
+        else source.variables
+    if hasattr(source, "iloc"):
+        raise TypeError(f"a {kind} is a table: give an array of three dimensions, such "
+                        f"as table.to_numpy().reshape(z, y, x)")
+    if hasattr(group, "keys"):  # a group of HDF5 or Zarr, a Dataset, an .npz
+        names = _volumes_first(group)
+        raise TypeError(f"a {kind} holds several arrays: choose one of them, "
+                        f"such as {kind.lower()}[{_first_path(group)!r}] "
+                        f"(there are {', '.join(names[:9]) or 'none'})")
+    if getattr(source, "n_frames", 1) > 1:
+        raise TypeError(f"a {kind} of {source.n_frames} frames shows one of them at a "
+                        f"time: give the path of its file")
     if isinstance(source, (list, tuple)) and source and \
             all(isinstance(each, (str, os.PathLike)) for each in source):
         raise TypeError("a list of files is no volume: name their folder, or a "
                         "pattern such as 'slices/ct_*.tif'")
-    try:
-        return numpy.asarray(source if isinstance(source, (list, tuple)) else
-                             memoryview(source))
-    except TypeError:
-        raise TypeError(f"a volume must be a path, an array, or an image of "
-                        f"nibabel or xarray, not {kind}") from None
 
 
 def _plain_type(array: Any, copy: Optional[bool]) -> Any:

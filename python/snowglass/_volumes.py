@@ -66,8 +66,8 @@ class Volume(_snowglass.Volume):
 
     def __new__(cls, source: Any, *, progress: Progress = None,
                 memory: int = 0, **options: Any) -> "Volume":
-        if isinstance(source, (str, os.PathLike)):
-            return cls._open(source, memory, progress, options)
+        if isinstance(source, (str, bytes, os.PathLike)):
+            return cls._open(os.fsdecode(source), memory, progress, options)
         if memory:
             raise TypeError("memory counts for files only")
         _arrays.check_options(options)

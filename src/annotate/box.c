@@ -279,7 +279,7 @@ static snow_status draw_axis(const box_view *b, const box_axis *axis) {
     }
     for (double n = ceil(low / step - 1e-6); n <= high / step + 1e-6; n++) {
         char text[40];
-        snprintf(text, sizeof text, "%.6g", n == 0 ? 0 : n * step);
+        snow_text_print(text, sizeof text, "%.6g", n == 0 ? 0 : n * step);
         place_on(b, axis, (n * step - from) / length, at);
         SNOW_TRY(draw_number(b, at, axis->out, 0.9, text));
     }

@@ -231,8 +231,8 @@ static snow_status draw_ticks(snow_overlay *overlay, const color_bar *bar) {
         const double step = ticks.step > 0 ? ticks.step : fabs(value);
         const double shown = fabs(value) < step / 1000 ? 0 : value;
         double digits = shown != 0 ? ceil(log10(fabs(shown) / step) + 1.5) : 6;
-        snprintf(text, sizeof text, "%.*g", (int)fmin(fmax(digits, 6), 15),
-                 shown);
+        snow_text_print(text, sizeof text, "%.*g",
+                        (int)fmin(fmax(digits, 6), 15), shown);
         SNOW_TRY(snow_overlay_text(overlay, bar->x0 - 0.9 * bar->height,
                                    place_of(bar, value), 1, 0.5, bar->height,
                                    text));
@@ -252,7 +252,7 @@ static snow_status draw_label(snow_overlay *overlay, const snow_label *label,
     char text[64];
     snprintf(text, sizeof text, "%s", label->name);
     if (!*text)
-        snprintf(text, sizeof text, "%.9g", label->value);
+        snow_text_print(text, sizeof text, "%.9g", label->value);
     snow_font_shorten((left - 1.4 * height) / height, text);
     for (int n = 0; n < 3 * rows; n++)
         colors[n] = (float)label->color[n % 3];

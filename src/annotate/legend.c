@@ -83,8 +83,8 @@ static void write_length(double length, const char *unit, char *out,
         length /= 1000;
     for (; at > 0 && length < 1; at--)
         length *= 1000;
-    snprintf(out, size, "%.4g%s%s", length, *unit ? " " : "",
-             at < 0 ? unit : units[at]);
+    snow_text_print(out, size, "%.4g%s%s", length, *unit ? " " : "",
+                    at < 0 ? unit : units[at]);
 }
 
 snow_status snow_overlay_scale_bar(snow_overlay *overlay,

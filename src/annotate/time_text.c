@@ -131,9 +131,9 @@ static bool find_moment(const snow_volume_info *info, moment *out) {
     double unit =
         seconds_in(info->time_unit, (size_t)(since - info->time_unit));
     *out = (moment){0};
-    int found =
-        sscanf(since + 7, "%lld-%d-%d%*[ T]%d:%d:%lf", &year, &out->month,
-               &out->day, &out->hour, &out->minute, &second);
+    int found = snow_text_scan(since + 7, "%lld-%d-%d%*[ T]%d:%d:%lf", &year,
+                               &out->month, &out->day, &out->hour, &out->minute,
+                               &second);
     if (found < 3 || unit == 0 || out->month < 1 || out->month > 12 ||
         llabs(year) > 1000000)
         return false;
@@ -243,7 +243,7 @@ bool snow_time_text(const snow_volume_info *given, const char *format,
         return format_moment(&m,
                              m.second ? "%Y-%m-%d %H:%M:%S" : "%Y-%m-%d %H:%M",
                              out, capacity);
-    int length = snprintf(out, capacity, "%.6g%s%s", info.time_value,
-                          *info.time_unit ? " " : "", info.time_unit);
+    int length = snow_text_print(out, capacity, "%.6g%s%s", info.time_value,
+                                 *info.time_unit ? " " : "", info.time_unit);
     return length >= 0 && (size_t)length < capacity;
 }

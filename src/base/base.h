@@ -155,12 +155,6 @@ static inline void snow_lap(double *mark, double *total) {
 bool snow_parse_int64(const char *text, int64_t *out);
 bool snow_parse_double(const char *text, double *out);
 
-/* Copies a number, replacing its point by `point`, the locale's. Returns false
- * if it does not fit into `capacity` bytes, already contains the locale's, or
- * is hexadecimal. */
-bool snow_localize_number(const char *text, const char *point, char *out,
-                          size_t capacity);
-
 /* True if `text` ends with `suffix`, ignoring case. */
 bool snow_has_suffix(const char *text, const char *suffix);
 

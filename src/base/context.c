@@ -109,7 +109,8 @@ const char *snow_status_description(snow_status status) {
 static void set_message(snow_context *context, const char *format,
                         va_list arguments) {
     pthread_mutex_lock(&context->lock);
-    vsnprintf(context->message, sizeof context->message, format, arguments);
+    snow_text_vprint(context->message, sizeof context->message, format,
+                     arguments);
     snow_text_to_line(context->message, sizeof context->message);
     pthread_mutex_unlock(&context->lock);
 }
@@ -155,7 +156,7 @@ void snow_context_warn(snow_context *context, const char *format, ...) {
     if (!context->warning)
         return;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    snow_text_vprint(text, sizeof text, format, arguments);
     va_end(arguments);
     snow_text_to_line(text, sizeof text);
     context->warning(context->warning_user, text);

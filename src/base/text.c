@@ -3,7 +3,8 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <langinfo.h>
+#include <locale.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,45 +25,64 @@ bool snow_parse_int64(const char *text, int64_t *out) {
     return true;
 }
 
-/* Longer than any double's exact decimal form, which is longest for the
- * smallest number: 1077 characters. */
-#define NUMBER_BYTES 1200
+/* The calling program's locale may have a decimal comma; files, messages and
+ * recipes have a point.  Only this thread's locale is replaced, for a moment.
+ */
+typedef struct locales {
+    locale_t point, before;
+} locales;
+
+static locales use_point(void) {
+    locales out = {.point = newlocale(LC_ALL_MASK, "C", (locale_t)0)};
+    if (out.point)
+        out.before = uselocale(out.point);
+    return out;
+}
+
+static void use_former(const locales *all) {
+    if (!all->point)
+        return;
+    uselocale(all->before);
+    freelocale(all->point);
+}
+
+int snow_text_vprint(char *text, size_t capacity, const char *format,
+                     va_list arguments) {
+    const locales all = use_point();
+    const int count = vsnprintf(text, capacity, format, arguments);
+    use_former(&all);
+    return count;
+}
+
+int snow_text_print(char *text, size_t capacity, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const int count = snow_text_vprint(text, capacity, format, arguments);
+    va_end(arguments);
+    return count;
+}
+
+int snow_text_scan(const char *text, const char *format, ...) {
+    const locales all = use_point();
+    va_list arguments;
+    va_start(arguments, format);
+    const int count = vsscanf(text, format, arguments);
+    va_end(arguments);
+    use_former(&all);
+    return count;
+}
 
 /* Hexadecimal numbers are rejected here: no format has them, but strtod accepts
  * them. */
-bool snow_localize_number(const char *text, const char *point, char *out,
-                          size_t capacity) {
-    size_t length = strlen(point), used = 0;
-    for (; *text; text++) {
-        bool is_point = *text == '.';
-        /* "1,5" is not a number in a file, whatever the locale. */
-        if (*text == 'x' || *text == 'X' ||
-            (!is_point && length && !strncmp(text, point, length)))
-            return false;
-        size_t wanted = is_point ? length : 1;
-        if (wanted >= capacity - used)
-            return false;
-        memcpy(out + used, is_point ? point : text, wanted);
-        used += wanted;
-    }
-    out[used] = 0;
-    return true;
-}
-
-/* strtod uses the locale of the calling program, which the library must neither
- * trust nor change: files have a point, which is replaced here by that of the
- * locale. nl_langinfo is used because localeconv's result is shared by all
- * threads. */
 bool snow_parse_double(const char *text, double *out) {
-    char *end, number[NUMBER_BYTES];
-    if (!snow_localize_number(text, nl_langinfo(RADIXCHAR), number,
-                              sizeof number))
-        return false;
+    char *end;
+    const locales all = use_point();
     errno = 0;
-    double value = strtod(number, &end);
+    const double value = strtod(text, &end);
     /* 1e999 is not taken for infinity; a number too small for a double is 0. */
-    bool overflow = errno == ERANGE && (value > 1 || value < -1);
-    if (end == number || overflow || !at_end(end))
+    const bool overflow = errno == ERANGE && (value > 1 || value < -1);
+    use_former(&all);
+    if (end == text || overflow || !at_end(end) || strpbrk(text, "xX"))
         return false;
     *out = value;
     return true;

@@ -95,8 +95,9 @@ static void write_box(const snow_volume_info *info, char text[128]) {
             ends[row][way > 0] += way;
         }
     }
-    snprintf(text, 128, "%.5g..%.5g x %.5g..%.5g x %.5g..%.5g", ends[0][0],
-             ends[0][1], ends[1][0], ends[1][1], ends[2][0], ends[2][1]);
+    snow_text_print(text, 128, "%.5g..%.5g x %.5g..%.5g x %.5g..%.5g",
+                    ends[0][0], ends[0][1], ends[1][0], ends[1][1], ends[2][0],
+                    ends[2][1]);
 }
 
 /* A mask on another grid is read as far as the box needs it. */

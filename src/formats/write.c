@@ -72,7 +72,6 @@ snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer) {
     return SNOW_STATUS_OK;
 }
 
-/* printf goes by the locale of the program around the library; files do not. */
 int snow_print_numbers(char *text, size_t capacity, const double *values,
                        int count, const char *between) {
     int used = 0;
@@ -80,13 +79,9 @@ int snow_print_numbers(char *text, size_t capacity, const double *values,
         if (i)
             used +=
                 snprintf(text + used, capacity - (size_t)used, "%s", between);
-        char *number = text + used;
         /* Adding 0 turns -0 into 0. */
-        used +=
-            snprintf(number, capacity - (size_t)used, "%.17g", values[i] + 0.0);
-        char *comma = strchr(number, ',');
-        if (comma)
-            *comma = '.';
+        used += snow_text_print(text + used, capacity - (size_t)used, "%.17g",
+                                values[i] + 0.0);
     }
     return used;
 }

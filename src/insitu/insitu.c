@@ -120,7 +120,7 @@ void snow_insitu_report(snow_insitu *insitu, const char *format, ...) {
         return;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    snow_text_vprint(text, sizeof text, format, arguments);
     va_end(arguments);
     insitu->warning(insitu->warning_user, text);
 }
@@ -174,7 +174,7 @@ snow_status snow_insitu_refuse(snow_insitu *insitu, const char *format, ...) {
     char text[SNOW_INSITU_MESSAGE];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    snow_text_vprint(text, sizeof text, format, arguments);
     va_end(arguments);
     return snow_insitu_set_error(
         insitu,

@@ -113,11 +113,7 @@ static snow_status add_marks(snow_insitu *insitu, int64_t step,
 
 /* Adds a number in JSON, whatever the locale of the simulation. */
 static char *add_number(char *at, double value, char end) {
-    char *begin = at;
-    at += snprintf(at, NUMBER_BYTES, "%.17g", value);
-    for (char *c = begin; c < at; c++)
-        if (!strchr("0123456789+-e", *c))
-            *c = '.';
+    at += snow_text_print(at, NUMBER_BYTES, "%.17g", value);
     *at++ = end;
     *at = 0;
     return at;

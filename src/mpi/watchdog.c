@@ -158,10 +158,11 @@ static void send_note(mpi_watchdog *watchdog, int to, const note *what) {
 static void take_answer(mpi_watchdog *watchdog, int from, const note *what) {
     watchdog->answered[from] = 1;
     if (what->waited > 3 * watchdog->limit)
-        snprintf(watchdog->verdict, sizeof watchdog->verdict,
-                 "rank %d waits for rank %d, and that for rank %d, for %.3g s "
-                 "and more: all ranks must make the same calls",
-                 watchdog->rank, from, what->waits_for, what->waited);
+        snow_text_print(
+            watchdog->verdict, sizeof watchdog->verdict,
+            "rank %d waits for rank %d, and that for rank %d, for %.3g s "
+            "and more: all ranks must make the same calls",
+            watchdog->rank, from, what->waits_for, what->waited);
 }
 
 /* Reads what has come. */
@@ -255,11 +256,12 @@ static void set_verdict(mpi_watchdog *watchdog, int first, int silent) {
     if (silent > 1 && reason == first)
         snprintf(others, sizeof others, " and %d more %s", silent - 1,
                  silent > 2 ? "ranks" : "rank");
-    snprintf(watchdog->verdict, sizeof watchdog->verdict,
-             "rank %d (process %d on %s)%s: rank %d has waited %.3g s, and got "
-             "no answer: %s",
-             reason, there->process, there->host, others, watchdog->rank,
-             watchdog->limit, guess(state_of(watchdog, reason)));
+    snow_text_print(
+        watchdog->verdict, sizeof watchdog->verdict,
+        "rank %d (process %d on %s)%s: rank %d has waited %.3g s, and got "
+        "no answer: %s",
+        reason, there->process, there->host, others, watchdog->rank,
+        watchdog->limit, guess(state_of(watchdog, reason)));
 }
 
 /* Names those of `peers` that have not answered, each once; returns their

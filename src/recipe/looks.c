@@ -4,6 +4,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <snowglass/extend.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -62,7 +63,8 @@ static bool read_percent(const json_t *value, double *out) {
     const char *text = json_string_value(value);
     size_t digits = text ? strspn(text + (*text == 'p'), "0123456789.") : 0;
     return digits && text[0] == 'p' && !text[1 + digits] &&
-           sscanf(text + 1, "%lf", out) == 1 && *out >= 0 && *out <= 100;
+           snow_text_scan(text + 1, "%lf", out) == 1 && *out >= 0 &&
+           *out <= 100;
 }
 
 /* Range, low and high follow each other in the record. */
@@ -109,8 +111,8 @@ static json_t *write_range(const recipe_key *key, const void *field) {
     case SNOW_RANGE_VALUES:
         return json_pack("[f,f]", range->low, range->high);
     case SNOW_RANGE_PERCENTILES:
-        snprintf(low, sizeof low, "p%.17g", range->low);
-        snprintf(high, sizeof high, "p%.17g", range->high);
+        snow_text_print(low, sizeof low, "p%.17g", range->low);
+        snow_text_print(high, sizeof high, "p%.17g", range->high);
         return json_pack("[s,s]", low, high);
     case SNOW_RANGE_FULL:
         return json_string("full");

@@ -2,6 +2,7 @@
 #include "recipe/kinds.h"
 
 #include <math.h>
+#include <snowglass/extend.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,8 +19,8 @@ static bool refuse_range(const recipe_key *key, char wrong[WRONG_BYTES],
     if (key->low == 0 && key->high == 0)
         snprintf(wrong, WRONG_BYTES, "must be %s", what);
     else
-        snprintf(wrong, WRONG_BYTES, "must be %s from %.17g to %.17g", what,
-                 key->low, key->high);
+        snow_text_print(wrong, WRONG_BYTES, "must be %s from %.17g to %.17g",
+                        what, key->low, key->high);
     return false;
 }
 
@@ -143,8 +144,8 @@ static void spell_real(double value, char text[40]) {
     double again = NAN;
     for (int digits = 6; digits <= 17 && !(again <= value && again >= value);
          digits++) {
-        snprintf(text, 40, "%.*g", digits, value);
-        again = strtod(text, NULL);
+        snow_text_print(text, 40, "%.*g", digits, value);
+        snow_text_scan(text, "%lf", &again);
     }
 }
 
@@ -153,17 +154,17 @@ static void spell_real(double value, char text[40]) {
 static bool read_scale(const recipe_key *key, const json_t *value, void *field,
                        char wrong[WRONG_BYTES]) {
     snow_recipe *r = recipe_at(field, offsetof(snow_recipe, symlog));
-    const char *text = json_string_value(value), *number = text;
+    const char *text = json_string_value(value);
     double from = 0;
-    char *end = NULL;
+    int used = -1; /* of a number */
     const bool is_log = text && strcasecmp(text, "log") == 0;
     if (text && strcasecmp(text, "symlog") == 0)
         from = -1;
     else if (text && strncasecmp(text, "symlog:", 7) == 0)
-        from = strtod(number += 7, &end);
-    if (end ? end == number || *end || !in_range(key, from)
-            : !text ||
-                  (!is_log && from == 0 && strcasecmp(text, "linear") != 0))
+        used = snow_text_scan(text + 7, "%lf%n", &from, &used) == 1 ? used : 0;
+    if (used >= 0 ? !used || text[7 + used] || !in_range(key, from)
+                  : !text || (!is_log && from == 0 &&
+                              strcasecmp(text, "linear") != 0))
         return recipe_refuse(wrong, "\"linear\", \"log\", \"symlog\" or "
                                     "\"symlog:X\", X from 1e-300 to 1e300");
     r->log = is_log;

@@ -350,9 +350,10 @@ snow_status snow_is_signed_field(const snow_histogram *histogram,
     if (!(*reach > 0))
         *reach = fmax(fabs(histogram->min), fabs(histogram->max));
     char text[40]; /* what is reported is used, as of other looks */
-    snprintf(text, sizeof text, "%.5g", *reach);
-    if (isfinite(strtod(text, NULL)))
-        *reach = strtod(text, NULL);
+    snow_text_print(text, sizeof text, "%.5g", *reach);
+    double again;
+    if (snow_parse_double(text, &again) && isfinite(again))
+        *reach = again;
     if (!(*reach > 0))
         *reach = 1;
     *is_signed = is_field(histogram) && !histogram->scale.log &&

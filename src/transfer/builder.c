@@ -60,9 +60,9 @@ snow_status snow_robust_range(const snow_histogram *histogram, double *low,
     if (full[1] - ends[0] < half)
         *low = ends[0];
     if (*low > full[0] || *high < full[1])
-        snprintf(builder->range_note, sizeof builder->range_note,
-                 "; few values outside, the data are %.5g..%.5g", full[0],
-                 full[1]);
+        snow_text_print(builder->range_note, sizeof builder->range_note,
+                        "; few values outside, the data are %.5g..%.5g",
+                        full[0], full[1]);
     return SNOW_STATUS_OK;
 }
 
@@ -195,8 +195,9 @@ static double rounded(const snow_transfer_builder *builder, double value) {
     int digits = 5;
     for (; span > 0 && span < most && digits < 17; digits++)
         span *= 10;
-    snprintf(text, sizeof text, "%.*g", digits, value);
-    double again = strtod(text, NULL);
+    snow_text_print(text, sizeof text, "%.*g", digits, value);
+    double again = NAN;
+    snow_text_scan(text, "%lf", &again);
     return isfinite(again) ? again : value;
 }
 

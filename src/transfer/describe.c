@@ -2,6 +2,7 @@
  * text. */
 #include "transfer/look.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,12 +33,13 @@ bool snow_look_suits_labels(const snow_look *look) {
  * it was chosen or given.  Others are rounded. */
 static const char *spell(double value, char text[40]) {
     for (int digits = 5; digits <= 12; digits++) {
-        snprintf(text, 40, "%.*g", digits, value);
-        double again = strtod(text, NULL);
+        snow_text_print(text, 40, "%.*g", digits, value);
+        double again = NAN;
+        snow_text_scan(text, "%lf", &again);
         if (again <= value && again >= value)
             return text;
     }
-    snprintf(text, 40, "%.5g", value);
+    snow_text_print(text, 40, "%.5g", value);
     return text;
 }
 

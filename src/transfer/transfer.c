@@ -115,9 +115,10 @@ static void describe_gradients(snow_transfer *transfer) {
             snprintf(text + used, capacity - used, ", ...");
             break;
         }
-        snprintf(text + used, capacity - used, "%s %.4g at %.5g",
-                 i ? "," : "; gradient opacity", transfer->gradients[i].opacity,
-                 transfer->gradients[i].value);
+        snow_text_print(text + used, capacity - used, "%s %.4g at %.5g",
+                        i ? "," : "; gradient opacity",
+                        transfer->gradients[i].opacity,
+                        transfer->gradients[i].value);
     }
 }
 

@@ -12,8 +12,8 @@
 void snow_print_limit(const snow_context *context, char text[64]) {
     *text = 0;
     if (context->limit)
-        snprintf(text, 64, " under the limit of %.1f MiB",
-                 (double)context->limit / 0x1p20);
+        snow_text_print(text, 64, " under the limit of %.1f MiB",
+                        (double)context->limit / 0x1p20);
 }
 
 /* Bytes of voxels that a slab may have where `made` times as many are made of

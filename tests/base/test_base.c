@@ -1,8 +1,6 @@
 /* tests/base/test_base.c - contexts, memory and numbers keep their promises. */
 #include "support/support.h"
 
-#include <locale.h>
-
 static void
 a_failed_allocation_tells_its_size_and_changes_nothing(void **state) {
     (void)state;
@@ -172,39 +170,6 @@ static void numbers_are_whole_or_refused(void **state) {
     assert_true(d == 1500);
 }
 
-static void a_number_gets_the_sign_of_the_locale(void **state) {
-    (void)state;
-    char out[8];
-    assert_true(snow_localize_number("-1.5", ",", out, sizeof out));
-    assert_string_equal(out, "-1,5");
-    assert_true(snow_localize_number("1.5", "\xd9\xab", out, sizeof out));
-    assert_string_equal(out, "1\xd9\xab"
-                             "5");
-    assert_true(snow_localize_number("1.5", ".", out, sizeof out));
-    assert_string_equal(out, "1.5");
-    assert_false(snow_localize_number("1,5", ",", out, sizeof out));
-    assert_true(snow_localize_number("1234567", ",", out, sizeof out));
-    assert_false(snow_localize_number("12345678", ",", out, sizeof out));
-}
-
-static void a_host_with_a_comma_reads_the_same_numbers(void **state) {
-    (void)state;
-    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE",
-                                        "fr_FR.UTF-8", "fr_FR"};
-    bool found = false;
-    for (size_t i = 0; i < sizeof names / sizeof *names && !found; i++)
-        found = setlocale(LC_NUMERIC, names[i]) != NULL;
-    if (!found)
-        skip();
-    double value = 7;
-    bool point = snow_parse_double("0.25", &value);
-    bool comma = snow_parse_double("0,5", &value);
-    setlocale(LC_NUMERIC, "C");
-    assert_true(point);
-    assert_false(comma);
-    assert_true(value == 0.25);
-}
-
 /* Bytes as ls --escape writes them; letters of UTF-8 stay, but for those that
  * turn the direction of text (U+202E) and controls of Latin-1 (U+009B). */
 static void a_message_is_one_line_whatever_it_quotes(void **state) {
@@ -276,8 +241,6 @@ int main(void) {
         cmocka_unit_test(large_blocks_grow_with_what_they_hold),
         cmocka_unit_test(large_blocks_go_back_to_the_system),
         cmocka_unit_test(numbers_are_whole_or_refused),
-        cmocka_unit_test(a_number_gets_the_sign_of_the_locale),
-        cmocka_unit_test(a_host_with_a_comma_reads_the_same_numbers),
         cmocka_unit_test(a_message_is_one_line_whatever_it_quotes),
         cmocka_unit_test(long_words_are_shortened),
         cmocka_unit_test(layers_add_what_they_know_to_a_message),

@@ -72,7 +72,7 @@ class Slices(InFolder):
         for array, options in (
                 (self.array, {"medical": True}),
                 (rising.reshape(self.array.shape), {}),
-                (numpy.asfortranarray(self.array), {}),
+                (numpy.asfortranarray(self.array), {"axes": "zyx"}),
                 (self.array.astype(numpy.uint8), {"slope": 2, "intercept": 1})):
             volume = sg.Volume(array, spacing=(1, 2, 3), **options)
             volume.save("a.mha")

@@ -175,7 +175,8 @@ class Arrays(InFolder):
     def test_any_order_of_memory_is_used_in_place(self):
         # Axes of the lattice change places: the same scene within its bound.
         turned = numpy.asfortranarray(self.array)
-        self.as_before(sg.Volume(turned, spacing=self.spacing, copy=False), 45)
+        self.as_before(sg.Volume(turned, axes="zyx", spacing=self.spacing,
+                                 copy=False), 45)
         self.as_before(sg.Volume(numpy.ascontiguousarray(self.array.T), axes="xyz",
                             spacing=self.spacing, copy=False), 45)
         self.as_before(sg.Volume(self.array.T, axes="xyz", spacing=self.spacing,

@@ -307,7 +307,7 @@ class Viewers(InFolder):
         array = block()
         given = {"spacing": (1, 1.5, 2)}
         plain = sg.Volume(array, **given)
-        turned = sg.Volume(numpy.asfortranarray(array), **given)
+        turned = sg.Volume(numpy.asfortranarray(array), axes="zyx", **given)
         recipe = {"clip": [[0, 0, 1, 20]], "size": [64, 64]}
         images = []
         for volume in (plain, turned):

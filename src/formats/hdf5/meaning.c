@@ -48,7 +48,8 @@ static void spell_unit(const double powers[7], char *out, size_t capacity) {
         used += (size_t)snprintf(out + used, capacity - used, "%s%s",
                                  used ? " " : "", units[i % 7]);
         if (power != 1)
-            used += (size_t)snprintf(out + used, capacity - used, "^%g", power);
+            used += (size_t)snow_text_print(out + used, capacity - used, "^%g",
+                                            power);
     }
 }
 

@@ -16,9 +16,9 @@
 
 /* What ITK-SNAP says behind the number. */
 static bool read_snap(const char *text, double numbers[6], snow_label *out) {
-    if (sscanf(text, "%lf %lf %lf %lf %lf %lf \"%63[^\"]", &numbers[0],
-               &numbers[1], &numbers[2], &numbers[3], &numbers[4], &numbers[5],
-               out->name) < 6)
+    if (snow_text_scan(text, "%lf %lf %lf %lf %lf %lf \"%63[^\"]", &numbers[0],
+                       &numbers[1], &numbers[2], &numbers[3], &numbers[4],
+                       &numbers[5], out->name) < 6)
         return false;
     out->color[3] = numbers[4] > 0 ? numbers[3] : 0;
     return true;
@@ -28,12 +28,12 @@ static bool read_line(const char *text, snow_label *out) {
     double numbers[6];
     int at = 0;
     *out = (snow_label){.color = {-1, 0, 0, -1}};
-    if (sscanf(text, "%lf%n", &out->value, &at) != 1)
+    if (snow_text_scan(text, "%lf%n", &out->value, &at) != 1)
         return false;
     text += at;
     if (!read_snap(text, numbers, out) &&
-        sscanf(text, " %63s %lf %lf %lf", out->name, &numbers[0], &numbers[1],
-               &numbers[2]) != 4)
+        snow_text_scan(text, " %63s %lf %lf %lf", out->name, &numbers[0],
+                       &numbers[1], &numbers[2]) != 4)
         return false;
     for (int c = 0; c < 3; c++) {
         out->color[c] = numbers[c] / 255;

@@ -29,8 +29,8 @@ static int print_geometry(char *text, size_t capacity,
     for (int j = 0; j < 4; j++) {
         const double vector[3] = {info->matrix[0][j], info->matrix[1][j],
                                   info->matrix[2][j]};
-        used += snprintf(text + used, capacity - (size_t)used, "%s",
-                         j < 3 ? " (" : "\nspace origin: (");
+        used += snow_text_print(text + used, capacity - (size_t)used, "%s",
+                                j < 3 ? " (" : "\nspace origin: (");
         used += snow_print_numbers(text + used, capacity - (size_t)used, vector,
                                    3, ",");
         used += snprintf(text + used, capacity - (size_t)used, ")");
@@ -49,10 +49,10 @@ static snow_status write_labels(const snow_volume *volume,
     for (size_t n = 0; n < volume->label_count; n++) {
         const snow_label *label = &volume->labels[n];
         char text[512];
-        int used = snprintf(text, sizeof text,
-                            "Segment%zu_LabelValue:=%.17g\n"
-                            "Segment%zu_Name:=%s\n",
-                            n, label->value, n, label->name);
+        int used = snow_text_print(text, sizeof text,
+                                   "Segment%zu_LabelValue:=%.17g\n"
+                                   "Segment%zu_Name:=%s\n",
+                                   n, label->value, n, label->name);
         if (label->color[0] >= 0) {
             used += snprintf(text + used, sizeof text - (size_t)used,
                              "Segment%zu_Color:=", n);
@@ -61,8 +61,9 @@ static snow_status write_labels(const snow_volume *volume,
             used += snprintf(text + used, sizeof text - (size_t)used, "\n");
         }
         if (label->color[3] >= 0)
-            used += snprintf(text + used, sizeof text - (size_t)used,
-                             "Segment%zu_Opacity:=%.17g\n", n, label->color[3]);
+            used += snow_text_print(text + used, sizeof text - (size_t)used,
+                                    "Segment%zu_Opacity:=%.17g\n", n,
+                                    label->color[3]);
         SNOW_TRY(snow_writer_write(writer, text, (size_t)used));
     }
     return SNOW_STATUS_OK;

@@ -189,6 +189,6 @@ snow_status snow_zarr_take_fill(const zarr_store *store, const json_t *given,
             store, array->path,
             "has a fill_value that is not a valid %s; correct it",
             snow_type_name(array->type));
-    snprintf(array->fill_text, sizeof array->fill_text, "%g", value);
+    snow_text_print(array->fill_text, sizeof array->fill_text, "%g", value);
     return SNOW_STATUS_OK;
 }

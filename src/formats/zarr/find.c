@@ -77,11 +77,11 @@ static void append_array(char list[LIST_BYTES], const char *name,
     char text[LIST_BYTES];
     const json_t *shape = json_object_get(meta, "shape");
     size_t axes = json_array_size(shape);
-    int used = snprintf(text, sizeof text, "%.300s (", name);
+    int used = snow_text_print(text, sizeof text, "%.300s (", name);
     for (size_t i = 0; i < axes && i < ZARR_MOST_AXES; i++)
-        used += snprintf(text + used, sizeof text - (size_t)used, "%s%.0f",
-                         i ? ", " : "",
-                         json_number_value(json_array_get(shape, i)));
+        used += snow_text_print(text + used, sizeof text - (size_t)used,
+                                "%s%.0f", i ? ", " : "",
+                                json_number_value(json_array_get(shape, i)));
     snprintf(text + used, sizeof text - (size_t)used, ")");
     append(list, text);
 }

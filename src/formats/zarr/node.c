@@ -15,7 +15,7 @@ snow_status snow_zarr_fail(const zarr_store *store, const char *path,
     char text[1024];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    snow_text_vprint(text, sizeof text, format, arguments);
     va_end(arguments);
     return snow_fail(store->context, SNOW_STATUS_BAD_INPUT, "%s%s%s%s%s",
                      store->folder, *store->folder && *path ? "/" : "", path,

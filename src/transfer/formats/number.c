@@ -2,7 +2,6 @@
  * every locale. */
 #include "transfer/formats/tf.h"
 
-#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,22 +10,22 @@
 #define NUMBER_BYTES 64
 
 bool tf_take_number(const char **at, const char *end, double *out) {
-    char text[2 * NUMBER_BYTES], *stop;
-    const char *from = *at, *point = localeconv()->decimal_point;
+    char text[NUMBER_BYTES];
+    const char *from = *at;
     size_t count = 0;
     while (from < end && strchr(" \t\r\n", *from) && *from)
         from++;
     *at = from;
     for (; from < end && *from && strchr("0123456789+-.eE", *from); from++) {
-        size_t length = *from == '.' ? strlen(point) : 1;
-        if (count + length >= sizeof text || from - *at >= NUMBER_BYTES)
+        if (count + 1 >= sizeof text)
             return false;
-        memcpy(text + count, *from == '.' ? point : from, length);
-        count += length;
+        text[count++] = *from;
     }
     text[count] = 0;
-    double value = strtod(text, &stop);
-    if (stop == text || *stop || !isfinite(value))
+    double value;
+    int used = 0;
+    if (snow_text_scan(text, "%lf%n", &value, &used) != 1 || text[used] ||
+        !isfinite(value))
         return false;
     *at = from;
     *out = value;

@@ -11,7 +11,7 @@ snow_status tf_fail(const tf_input *in, const char *format, ...) {
     char text[1024];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    snow_text_vprint(text, sizeof text, format, arguments);
     va_end(arguments);
     for (char *at = text; *at; at++) /* of a name that a file gave */
         *at = (unsigned char)*at < ' ' ? '?' : *at;

@@ -93,7 +93,7 @@ static void put_text(sheet *out, const char *format, ...) {
     char line[256];
     va_list arguments;
     va_start(arguments, format);
-    int count = vsnprintf(line, sizeof line, format, arguments);
+    int count = snow_text_vprint(line, sizeof line, format, arguments);
     va_end(arguments);
     if (count < 0)
         return;
