@@ -120,9 +120,11 @@ bool info_is_list(const options *opts) {
     const char *path = opts->operands[0];
     if (opts->series || opts->dataset || !is_folder(path))
         return false;
-    /* Slices among volumes of their own are no reason to hide these. */
-    if (probe(opts, path, &info) && strcmp(info.format, "dicom") != 0 &&
-        !are_images(&info))
+    /* Slices among volumes of their own are no reason to hide these; files that
+     * lead to one another are one volume. */
+    if (probe(opts, path, &info) &&
+        ((strcmp(info.format, "dicom") != 0 && !are_images(&info)) ||
+         strncmp(info.storage, "set of", 6) == 0))
         return false;
     return holds_volumes(opts, path);
 }

@@ -138,9 +138,10 @@ int info_open(snow_context *context, const options *opts, const char *path,
     char fault[1024];
     snow_volume_options data = data_options(opts);
     snow_status status = open_or_inspect(context, path, &data, info, out);
-    if (status != SNOW_STATUS_BAD_INPUT || data.allow_gaps || !is_folder(path))
-        return check_status(context, status);
     snprintf(fault, sizeof fault, "%s", snow_context_message(context));
+    if (status != SNOW_STATUS_BAD_INPUT || data.allow_gaps ||
+        (!is_folder(path) && !strstr(fault, "--allow-gaps")))
+        return check_status(context, status);
     data.allow_gaps = true;
     if (open_or_inspect(context, path, &data, info, out) != SNOW_STATUS_OK) {
         say("%s", fault);

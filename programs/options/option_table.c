@@ -223,8 +223,9 @@ const option_row option_table[] = {
      "DICOM series to read, by UID or by its number in the list (default: the "
      "largest)"},
     {"allow-gaps", 0, NULL, TOPIC_DATA, INPUT, read_flag, FIELD(allow_gaps), 0,
-     0, "open a DICOM folder in which slices are missing or cut: a note names each, "
-     "and its place stays transparent (default: refuse, except for info)"},
+     0, "open a DICOM folder, an OME-TIFF or a stack of ImageJ in which slices are "
+     "missing or cut: a note names each, and its place stays transparent (default: "
+     "refuse, except for info)"},
     {"levels", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(levels), 1, 24,
      "levels of refinement to read, the coarsest first, as if the file had no "
      "finer ones: of AMReX and .vth (default: all)"},

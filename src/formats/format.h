@@ -81,6 +81,11 @@ static inline bool snow_spacing_given(const snow_volume_options *options) {
     "the distance of the slices is taken to be the width of a pixel, %g; " \
     "--spacing sets another"
 
+/* In info->storage, of a volume whose file leads to others that hold it too;
+ * and how a file ends that has no pages itself. */
+#define SNOW_SET_OF_FILES "set of %zu files"
+#define SNOW_COMPANION ".companion.ome"
+
 /* The usual end of a binary reader whose time steps follow one another behind
  * `skip` bytes: lays the window, checks that the source can hold all, makes the
  * volume unless `out` is NULL, reads it, swaps bytes when `big_endian` differs

@@ -24,10 +24,13 @@ typedef struct stack {
     bool cropped;                /* slices are read in part */
 } stack;
 
-/* The format whose names the file has, if files of it are slices. */
+/* The format whose names the file has, if files of it are slices; what says of
+ * others what they are is none. */
 static const snow_format *slice_format(const stack *s, const char *path) {
     const snow_format *format = s->find(path);
-    return format && format->slices ? format : NULL;
+    return format && format->slices && !snow_has_suffix(path, SNOW_COMPANION)
+               ? format
+               : NULL;
 }
 
 /* Returns whether any file is a slice that cannot be a preview of others. */
@@ -194,6 +197,24 @@ static snow_status read_slices(stack *s, int64_t first, snow_volume *volume) {
     return status;
 }
 
+/* Returns whether the first file leads to all others, which are one volume
+ * whatever their names. */
+static bool is_set(const stack *s, const snow_volume_options *options) {
+    snow_volume_options any = *options;
+    snow_volume_info info;
+    size_t files;
+    memset(any.crop, 0, sizeof any.crop);
+    snow_warning_fn *warning = s->context->warning;
+    s->context->warning = NULL;
+    stack whole = *s;
+    whole.options = any;
+    const bool is = read_file(&whole, 0, &info, NULL) == SNOW_STATUS_OK &&
+                    sscanf(info.storage, SNOW_SET_OF_FILES, &files) == 1 &&
+                    files >= s->files->count;
+    s->context->warning = warning;
+    return is;
+}
+
 /* The box is applied to all slices along z, then each slice is cropped alike.
  * The first slice gives the size for a box without an end. */
 static snow_status read_stack(stack *s, const snow_volume_options *options,
@@ -205,6 +226,8 @@ static snow_status read_stack(stack *s, const snow_volume_options *options,
             "--series %.64s: only DICOM files have series; remove the option",
             options->series);
     s->options = *options;
+    if (is_set(s, options))
+        return read_file(s, 0, info, out);
     memset(s->options.crop, 0, sizeof s->options.crop);
     SNOW_TRY(check_numbers(s));
     SNOW_TRY(look_at_first(s));

@@ -8,63 +8,16 @@
 #include "formats/tiff/tiff.h"
 #include "formats/array.h"
 #include "formats/features.h"
+#include "volume/mask.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #if SNOW_HAVE_TIFF && !SNOW_LOADS
 
 /* More of one slice are read as slices; see take_for_slices. */
 #define MOST_CHANNELS 7
-
-/* How the file's images form volumes. */
-typedef struct tiff_plan {
-    tiff_page page;
-    tiff_shape shape;
-    int64_t images; /* pages, or the images that ImageJ wrote after the first */
-    bool raw;       /* the latter */
-    bool measured;  /* the size of a pixel is known by the resolution alone */
-    /* Distances, in images, of channels, slices and times. */
-    int64_t channel_step, slice_step, time_step;
-    int64_t channels, slices, times;
-} tiff_plan;
-
-static bool same_page(const tiff_page *a, const tiff_page *b) {
-    return a->width == b->width && a->height == b->height &&
-           a->samples == b->samples && a->type == b->type &&
-           a->bits == b->bits && a->coding == b->coding;
-}
-
-/* Advances to the next page that counts; *got is false after the last. */
-static snow_status next_page(snow_tiff *file, bool *got) {
-    uint32_t kind = 0;
-    do { /* past thumbnails of others */
-        SNOW_TRY(snow_tiff_next(file, got));
-        TIFFGetFieldDefaulted(file->tiff, TIFFTAG_SUBFILETYPE, &kind);
-    } while (*got && (kind & FILETYPE_REDUCEDIMAGE));
-    return SNOW_STATUS_OK;
-}
-
-/* Counts the pages, which must be alike: the first that differs is named. */
-static snow_status count_pages(snow_tiff *file, tiff_plan *plan) {
-    bool got;
-    for (plan->images = 1;; plan->images++) {
-        tiff_page page;
-        SNOW_TRY(next_page(file, &got));
-        if (!got)
-            return SNOW_STATUS_OK;
-        SNOW_TRY(snow_tiff_describe(file, &page));
-        if (!same_page(&page, &plan->page))
-            return snow_fail(
-                file->context, SNOW_STATUS_BAD_INPUT,
-                "page %lld has %lldx%lld pixels of %s, but the first has "
-                "%lldx%lld of %s; all slices of a volume must be alike",
-                (long long)plan->images, (long long)page.width,
-                (long long)page.height, snow_type_name(page.type),
-                (long long)plan->page.width, (long long)plan->page.height,
-                snow_type_name(plan->page.type));
-    }
-}
 
 /* Programs often call slices times, or channels, of which ImageJ shows at most
  * seven: a volume of one slice is hardly meant. */
@@ -81,41 +34,32 @@ static void take_for_slices(snow_context *context, tiff_plan *plan) {
     *count = 1;
 }
 
-/* Channels, slices and times by the description, if their product is the number
- * of images; otherwise all are slices. */
-static void share_images(snow_context *context, tiff_plan *plan) {
+/* Channels, slices and times by the description, and how far apart each lie;
+ * without one all pages are slices. */
+static snow_status share_planes(snow_context *context, tiff_plan *plan) {
     const tiff_shape *shape = &plan->shape;
-    int64_t c = shape->channels ? shape->channels : 1;
-    int64_t z = shape->slices ? shape->slices : 1;
-    int64_t t = shape->frames ? shape->frames : 1;
+    int64_t sizes[3] = {shape->channels ? shape->channels : 1,
+                        shape->slices ? shape->slices : 1,
+                        shape->frames ? shape->frames : 1};
     uint64_t all;
-    /* OME counts the samples of a pixel as channels too. */
-    if (!shape->imagej && plan->page.samples > 1 && c % plan->page.samples == 0)
-        c /= plan->page.samples;
-    bool right = snow_mul_u64((uint64_t)c, (uint64_t)z, &all) &&
-                 snow_mul_u64(all, (uint64_t)t, &all) &&
-                 all == (uint64_t)plan->images && (c > 1 || z > 1 || t > 1);
-    if (!right) {
-        c = t = 1;
-        z = plan->images;
-    }
+    int64_t *steps[3] = {&plan->channel_step, &plan->slice_step,
+                         &plan->time_step};
+    if (!snow_mul_u64((uint64_t)sizes[0], (uint64_t)sizes[1], &all) ||
+        !snow_mul_u64(all, (uint64_t)sizes[2], &all) || all >> 40)
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "its description claims more planes than any file "
+                         "has; it is damaged");
+    plan->planes = (int64_t)all;
     int64_t step = 1;
-    for (const char *at = right ? shape->order + 2 : "CZT"; *at; at++) {
-        if (*at == 'C') {
-            plan->channel_step = step;
-            step *= c;
-        } else if (*at == 'Z') {
-            plan->slice_step = step;
-            step *= z;
-        } else {
-            plan->time_step = step;
-            step *= t;
-        }
+    for (const char *at = shape->order + 2; *at; at++) {
+        const int axis = (int)(strchr("CZT", *at) - "CZT");
+        *steps[axis] = step;
+        step *= sizes[axis];
     }
-    plan->channels = c;
-    plan->slices = z;
-    plan->times = t;
-    take_for_slices(context, plan);
+    plan->channels = sizes[0];
+    plan->slices = sizes[1];
+    plan->times = sizes[2];
+    return SNOW_STATUS_OK;
 }
 
 /* Sizes of a pixel that microscopes, scanners and cameras give. */
@@ -180,14 +124,92 @@ static void describe_channels(const tiff_plan *plan, snow_volume_info *info) {
         info->channel[samples - 1].shown = false;
 }
 
-static snow_status make_plan(snow_tiff *file, tiff_plan *plan,
-                             snow_volume_info *info) {
-    char *text = NULL;
-    SNOW_TRY(snow_tiff_describe(file, &plan->page));
-    TIFFGetField(file->tiff, TIFFTAG_IMAGEDESCRIPTION, &text);
-    snow_tiff_read_text(text, &plan->shape);
-    /* Slices whose distance is not given are as far apart as pixels. */
+/* Where one page is followed by all planes, as ImageJ writes more than 4 GB,
+ * those that are there. */
+static void count_raw(const snow_tiff *file, tiff_plan *plan) {
+    const tiff_page *page = &plan->page;
+    uint64_t *offsets = NULL;
+    const uint64_t size = snow_seekable_size(file->bytes);
+    const uint64_t plane =
+        TIFFScanlineSize64(file->tiff) * (uint64_t)page->height;
+    plan->raw =
+        plan->present == 1 && plan->planes > 1 && page->coding == TIFF_PLAIN &&
+        !page->separate && page->compression == COMPRESSION_NONE && plane &&
+        TIFFGetField(file->tiff, TIFFTAG_STRIPOFFSETS, &offsets) && offsets &&
+        *offsets < size && TIFFCurrentDirOffset(file->tiff) < *offsets;
+    if (plan->raw)
+        plan->present = (int64_t)((size - *offsets) / plane);
+    if (plan->raw && plan->present > plan->planes)
+        plan->present = plan->planes;
+}
+
+/* Channels, slices and times of ImageJ count if their product is the number of
+ * images that it says, or without that of pages. */
+static snow_status plan_pages(tiff_set *set, tiff_plan *plan) {
     tiff_shape *shape = &plan->shape;
+    tiff_reader *own = &set->own;
+    const int64_t c = shape->channels ? shape->channels : 1;
+    const int64_t z = shape->slices ? shape->slices : 1;
+    const int64_t t = shape->frames ? shape->frames : 1;
+    const double said = (double)c * (double)z * (double)t;
+    const int64_t most = shape->images > 1 ? shape->images : INT64_MAX;
+    SNOW_TRY(snow_tiff_list_pages(own, false, &plan->page, most));
+    if (!TIFFSetSubDirectory(own->file.tiff, *own->pages))
+        return snow_tiff_fail(&own->file);
+    plan->present = own->count;
+    const int64_t all = shape->images > 1 ? shape->images : own->count;
+    if (said != (double)all) {
+        shape->channels = shape->frames = 1;
+        shape->slices = all;
+    }
+    memcpy(shape->order, "XYCZT", sizeof shape->order);
+    SNOW_TRY(share_planes(set->context, plan));
+    if (plan->present > plan->planes)
+        snow_notify(set->context,
+                    "%lld pages beyond the %lld images of its description are "
+                    "left out",
+                    (long long)(plan->present - plan->planes),
+                    (long long)plan->planes);
+    if (plan->present > plan->planes)
+        plan->present = plan->planes;
+    count_raw(&own->file, plan);
+    return snow_tiff_check_count(set, plan->present, plan->planes);
+}
+
+/* Pages are as the first that the XML names and that is there. */
+static snow_status plan_ome(tiff_set *set, tiff_plan *plan, tiff_reader **out) {
+    const tiff_ome *ome = &set->ome;
+    tiff_reader *reader = NULL;
+    plan->shape = ome->shape;
+    if (set->own.open)
+        SNOW_TRY(snow_tiff_list_pages(&set->own, true, NULL, 0));
+    size_t n = 0;
+    for (; n < ome->run_count; n++) {
+        SNOW_TRY(snow_tiff_open_member(set, ome->runs[n].file, &reader));
+        if (reader && ome->runs[n].page < reader->count)
+            break;
+    }
+    if (n == ome->run_count)
+        return snow_fail(set->context, SNOW_STATUS_BAD_INPUT,
+                         "none of the pages of its image is there; get its "
+                         "other files, and put them beside it");
+    if (!TIFFSetSubDirectory(reader->file.tiff,
+                             reader->pages[ome->runs[n].page]))
+        return snow_tiff_fail(&reader->file);
+    SNOW_TRY(snow_tiff_describe(&reader->file, &plan->page));
+    /* Samples of a pixel are counted as channels too. */
+    if (plan->page.samples > 1 &&
+        plan->shape.channels % plan->page.samples == 0)
+        plan->shape.channels /= plan->page.samples;
+    SNOW_TRY(share_planes(set->context, plan));
+    SNOW_TRY(snow_tiff_place(set, plan));
+    return snow_tiff_open_member(set, ome->runs[n].file, out);
+}
+
+/* Slices whose distance is not given are as far apart as pixels. */
+static void take_matrix(snow_tiff *file, tiff_plan *plan,
+                        snow_volume_info *info) {
+    const tiff_shape *shape = &plan->shape;
     take_resolution(file, plan);
     for (int i = 0; i < 3; i++)
         if (shape->spacing[i] > 0 && isfinite(shape->spacing[i]))
@@ -196,16 +218,23 @@ static snow_status make_plan(snow_tiff *file, tiff_plan *plan,
             info->matrix[2][2] = info->matrix[0][0];
     snow_image_turn(info->matrix);
     memcpy(info->unit, shape->unit, sizeof info->unit);
-    snow_tiff_read_channels(file, &plan->page, &plan->shape);
-    SNOW_TRY(count_pages(file, plan));
-    /* ImageJ writes one page followed by all images if they exceed 4 GB. */
-    plan->raw = plan->images == 1 && plan->shape.imagej &&
-                plan->shape.images > 1 && plan->page.coding == TIFF_PLAIN &&
-                plan->page.compression == COMPRESSION_NONE &&
-                !plan->page.separate;
-    if (plan->raw)
-        plan->images = plan->shape.images;
-    share_images(file->context, plan);
+}
+
+static snow_status make_plan(tiff_set *set, tiff_plan *plan,
+                             snow_volume_info *info) {
+    tiff_reader *reader = &set->own;
+    char *text = NULL;
+    if (set->is_ome) {
+        SNOW_TRY(plan_ome(set, plan, &reader));
+    } else {
+        SNOW_TRY(snow_tiff_describe(&reader->file, &plan->page));
+        TIFFGetField(reader->file.tiff, TIFFTAG_IMAGEDESCRIPTION, &text);
+        snow_tiff_read_text(text, &plan->shape);
+        SNOW_TRY(plan_pages(set, plan));
+    }
+    take_matrix(&reader->file, plan, info);
+    snow_tiff_read_channels(&reader->file, &plan->page, &plan->shape);
+    take_for_slices(set->context, plan);
     info->dims[0] = plan->page.width;
     info->dims[1] = plan->page.height;
     info->dims[2] = plan->slices;
@@ -215,111 +244,127 @@ static snow_status make_plan(snow_tiff *file, tiff_plan *plan,
     return SNOW_STATUS_OK;
 }
 
-/* Checks that the file can hold all pixels of all images, compressed or not. */
-static snow_status check_size(const snow_tiff *file, const tiff_plan *plan) {
-    const tiff_page *page = &plan->page;
-    uint64_t bits;
-    bool counts =
-        snow_mul_u64((uint64_t)page->width, (uint64_t)page->height, &bits) &&
-        snow_mul_u64(bits, (uint64_t)page->samples, &bits) &&
-        snow_mul_u64(bits, (uint64_t)plan->images, &bits) &&
-        snow_mul_u64(bits, page->bits, &bits);
-    uint64_t size = snow_seekable_size(file->bytes);
-    if (counts && snow_tiff_least(page, bits / 8) <= size)
-        return SNOW_STATUS_OK;
-    return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
-                     "claims %lld images of %lldx%lld pixels, which its %llu "
-                     "bytes cannot hold; it is truncated or damaged",
-                     (long long)plan->images, (long long)page->width,
-                     (long long)page->height, (unsigned long long)size);
+/* --- what is said --------------------------------------------------------- */
+
+static void note_spacing(snow_context *context, const tiff_plan *plan,
+                         const snow_volume_options *options,
+                         const snow_volume_info *info) {
+    if (snow_spacing_given(options))
+        return;
+    if (plan->measured)
+        snow_notify(context,
+                    "a pixel is taken to be %.4g x %.4g mm by the file's "
+                    "resolution; --spacing sets another",
+                    plan->shape.spacing[0], plan->shape.spacing[1]);
+    if (info->dims[2] > 1 && info->matrix[0][0] != 1 &&
+        !(plan->shape.spacing[2] > 0))
+        snow_notify(context, SNOW_WIDTH_IS_DISTANCE, info->matrix[0][0]);
 }
 
-/* Reads a page with its own layout: samples may be interleaved in one page and
- * in planes in the next, with another compression. */
-static snow_status read_page(snow_tiff *file, const tiff_plan *plan,
-                             int64_t sample, const snow_region *region,
-                             unsigned char *slice) {
-    tiff_page page;
-    SNOW_TRY(snow_tiff_describe(file, &page));
-    if (!same_page(&page, &plan->page))
-        return snow_tiff_fail(file);
-    return snow_tiff_read_page(file, &page, sample, region, slice);
+static void note_set(const tiff_set *set, const snow_volume_options *options,
+                     snow_volume_info *info) {
+    if (set->ome.images > 1 && !options->dataset && !options->series)
+        snow_notify(set->context,
+                    "has %lld images: %s; the first is taken, --dataset "
+                    "selects another by its number or name",
+                    (long long)set->ome.images, set->ome.list);
+    if (set->renamed)
+        snow_notify(set->context,
+                    "%lld of its files have other names than it says, and "
+                    "were found by their UUIDs or as the only one",
+                    (long long)set->renamed);
+    if (set->strange)
+        snow_notify(set->context,
+                    "%lld of its files have another UUID than it says; files "
+                    "of those names are taken",
+                    (long long)set->strange);
+    if (set->ome.files > 1)
+        snprintf(info->storage, sizeof info->storage, SNOW_SET_OF_FILES,
+                 set->ome.files);
 }
 
-/* Walks the pages from the first on, since each gives the position of the next;
- * those in the box are read into their slices. */
-static snow_status read_pages(snow_tiff *file, const tiff_plan *plan,
-                              int64_t first, int64_t sample,
-                              const snow_region *region, snow_volume *volume) {
-    size_t slice_bytes = (size_t)(region->count[0] * region->count[1]) *
-                         snow_type_size(volume->info.type);
-    int64_t at = 0;
-    bool got = TIFFSetDirectory(file->tiff, 0) != 0;
-    for (int64_t z = 0; z < region->count[2]; z++) {
-        int64_t wanted = first + (region->first[2] + z) * plan->slice_step;
-        unsigned char *slice =
-            (unsigned char *)volume->owned + (size_t)z * slice_bytes;
-        if (plan->raw) {
-            SNOW_TRY(snow_tiff_read_raw(file, &plan->page, wanted, sample,
-                                        region, slice));
-            continue;
-        }
-        for (; at < wanted && got; at++)
-            SNOW_TRY(next_page(file, &got));
-        if (!got)
-            return snow_tiff_fail(file);
-        SNOW_TRY(read_page(file, plan, sample, region, slice));
+/* --- voxels --------------------------------------------------------------- */
+
+/* Puts NaN where slices are missing, for which the type was chosen. */
+static snow_status leave_gaps(snow_volume **volume, const bool *missing) {
+    snow_volume *old = *volume, *made;
+    snow_volume_info info = old->info;
+    const int64_t slice = info.dims[0] * info.dims[1];
+    snow_mask_info(&info);
+    SNOW_TRY(snow_volume_new(old->context, &info, &made));
+    for (int64_t i = 0; i < slice * info.dims[2]; i++) {
+        const double value =
+            missing[i / slice] ? (double)NAN : snow_volume_native(old, i);
+        if (info.type == SNOW_TYPE_FLOAT32)
+            ((float *)made->owned)[i] = (float)value;
+        else
+            ((double *)made->owned)[i] = value;
     }
+    snow_volume_close(old);
+    *volume = made;
     return SNOW_STATUS_OK;
 }
 
+static snow_status read_box(tiff_set *set, const tiff_plan *plan, bool gaps,
+                            int64_t channel, const snow_region *region,
+                            snow_volume_info *info, snow_volume **out) {
+    const int64_t samples = plan->page.samples;
+    const int64_t first =
+        info->time * plan->time_step + channel / samples * plan->channel_step;
+    snow_volume *volume = NULL;
+    bool *missing =
+        snow_allocate_array(set->context, (uint64_t)region->count[2], 1);
+    if (!missing)
+        return SNOW_STATUS_NO_MEMORY;
+    snow_status status = snow_volume_new(set->context, info, &volume);
+    if (status == SNOW_STATUS_OK)
+        status = snow_tiff_read_planes(set, plan, first, channel % samples,
+                                       region, volume, missing);
+    if (status == SNOW_STATUS_OK && gaps)
+        status = leave_gaps(&volume, missing);
+    snow_release(set->context, missing);
+    if (status != SNOW_STATUS_OK)
+        snow_volume_close(volume);
+    else
+        *out = volume;
+    return status;
+}
+
 /* Channels are samples of a pixel or pages of their own. */
-static snow_status read_open(snow_tiff *file,
+static snow_status read_open(tiff_set *set, tiff_plan *plan,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
-    tiff_plan plan = {0};
+    snow_context *context = set->context;
     int64_t channel;
+    bool gaps;
     snow_region region;
-    SNOW_TRY(make_plan(file, &plan, info));
-    if (plan.measured && !snow_spacing_given(options))
-        snow_notify(file->context,
-                    "a pixel is taken to be %.4g x %.4g mm by the file's "
-                    "resolution; --spacing sets another",
-                    plan.shape.spacing[0], plan.shape.spacing[1]);
-    if (info->dims[2] > 1 && info->matrix[0][0] != 1 &&
-        !(plan.shape.spacing[2] > 0) && !snow_spacing_given(options))
-        snow_notify(file->context, SNOW_WIDTH_IS_DISTANCE, info->matrix[0][0]);
-    SNOW_TRY(check_size(file, &plan));
-    SNOW_TRY(snow_volume_pick_channel(file->context, options,
-                                      plan.channels * plan.page.samples, info,
-                                      &channel));
-    SNOW_TRY(snow_volume_pick_time(file->context, "time step", options, info));
-    SNOW_TRY(snow_region_lay_out(file->context, options, info, &region));
-    if (!out)
-        return SNOW_STATUS_OK;
-    int64_t first = info->time * plan.time_step +
-                    channel / plan.page.samples * plan.channel_step;
-    snow_volume *volume;
-    SNOW_TRY(snow_volume_new(file->context, info, &volume));
-    snow_status status = read_pages(
-        file, &plan, first, channel % plan.page.samples, &region, volume);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    *out = volume;
+    SNOW_TRY(make_plan(set, plan, info));
+    note_spacing(context, plan, options, info);
+    SNOW_TRY(snow_volume_pick_channel(
+        context, options, plan->channels * plan->page.samples, info, &channel));
+    SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
+    SNOW_TRY(snow_tiff_check_planes(
+        set, plan, options, channel / plan->page.samples, info->time, &gaps));
+    note_set(set, options, info);
+    SNOW_TRY(snow_region_lay_out(context, options, info, &region));
+    if (out)
+        SNOW_TRY(read_box(set, plan, gaps, channel, &region, info, out));
+    if (gaps)
+        snow_mask_info(info);
     return SNOW_STATUS_OK;
 }
 
 static snow_status read_tiff(snow_source *source,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
-    snow_tiff file;
+    tiff_set set;
+    tiff_plan plan = {.places = NULL};
     *info = snow_volume_info_default("tiff");
-    snow_status status = snow_tiff_open(source, &file);
+    snow_status status = snow_tiff_open_set(source, options, &set);
     if (status == SNOW_STATUS_OK)
-        status = read_open(&file, options, info, out);
-    snow_tiff_close(&file);
+        status = read_open(&set, &plan, options, info, out);
+    snow_release(set.context, plan.places);
+    snow_tiff_close_set(&set);
     return status;
 }
 
@@ -348,9 +393,12 @@ static snow_status read_tiff(snow_source *source,
 const snow_format snow_format_tiff = {
     .name = "tiff",
     .text = "TIFF, BigTIFF: pages, a folder or a pattern of files (.tif)",
-    .suffixes = {".tif", ".tiff", ".btf", ".tif.gz", ".tiff.gz"},
+    .suffixes = {".tif", ".tiff", ".btf", ".tif.gz", ".tiff.gz",
+                 SNOW_COMPANION},
     .probe = snow_tiff_probe,
     .crops = true,
+    .sets = true,
+    .series = true,
     .channels = true,
     .slices = true,
     .read = read_tiff,

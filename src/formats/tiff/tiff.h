@@ -1,7 +1,10 @@
 /* formats/tiff/tiff.h - the parts of the TIFF reader, private to this folder.
  *
  *   tiff.c   the file -> the pages that are slices, the volume
- *   text.c   descriptions by ImageJ and OME -> tiff_shape
+ *   text.c   descriptions by ImageJ and tifffile -> tiff_shape
+ *   ome.c    OME-XML -> tiff_shape, and which page has which plane
+ *   set.c    the files that OME-XML names
+ *   planes.c   planes that are there or missing -> the volume's voxels
  *   channels.c   what it says of channels
  *   page.c   a page -> voxels of a slice, by libtiff */
 #ifndef SNOW_FORMATS_TIFF_TIFF_H
@@ -25,6 +28,52 @@ typedef struct tiff_shape {
 /* Reads the text of the ImageDescription, which may be NULL. */
 void snow_tiff_read_text(const char *text, tiff_shape *out);
 
+/* Unifies the many spellings of a micrometre; others stay as they are. */
+void snow_tiff_take_unit(const char *text, char unit[16]);
+
+/* Metres in a unit of length by such a name; 0 if unknown. */
+double snow_tiff_metres(const char *unit);
+
+/* Planes that OME-XML says to be consecutive pages of a file: a TiffData. */
+typedef struct tiff_run {
+    int64_t first[3];    /* the first plane's c, z and t */
+    int64_t page, count; /* count 0: as many as there are */
+    size_t file;         /* index of a member */
+} tiff_run;
+
+/* A file of the set: member 0 is where the XML is; others have a name, a UUID,
+ * or both.  Names are places in the block of text. */
+typedef struct tiff_member {
+    size_t name, uuid;
+    const char *key;
+    size_t same; /* the first member that is this file */
+    enum { TIFF_UNKNOWN, TIFF_OWN, TIFF_OTHER, TIFF_ABSENT } state;
+    int64_t pages, used; /* of a file that was opened; pages that are wanted */
+    uint64_t bytes;      /* ... its size */
+} tiff_member;
+
+/* The image of an OME-XML that is read. */
+typedef struct tiff_ome {
+    tiff_shape shape;
+    int64_t samples;     /* values of a pixel that are channels of their own */
+    int64_t images;      /* in the XML; */
+    char list[512];      /* ... their numbers and names, cut */
+    char uuid[64];       /* of the file that the XML is in, "": none */
+    char elsewhere[256]; /* the file with the XML, if it is not this one */
+    tiff_run *runs;
+    tiff_member *members;
+    size_t run_count, member_count, files; /* files that have planes */
+    char *text;
+    size_t used;
+} tiff_ome;
+
+/* Reads XML: of several images that of a name, a number or an ID, or the first
+ * for NULL.  The caller frees it whatever the status.  Errors:
+ * SNOW_STATUS_BAD_INPUT (damaged), SNOW_STATUS_BAD_USAGE (no such image). */
+snow_status snow_tiff_read_ome(snow_source *source, const char *wanted,
+                               tiff_ome *out);
+void snow_tiff_free_ome(snow_context *context, tiff_ome *ome);
+
 #if SNOW_HAVE_TIFF
 
 /* How a value is stored; an unsupported type becomes a larger one. */
@@ -43,6 +92,86 @@ typedef struct tiff_page {
     uint16_t bits, compression;
     bool separate; /* samples are in planes, not interleaved */
 } tiff_page;
+
+/* An open file and the places of its pages. */
+typedef struct tiff_reader {
+    snow_source *source;
+    snow_tiff file;
+    bool open;
+    uint64_t *pages;
+    int64_t count;
+} tiff_reader;
+
+/* The files of an image: that which is opened, and another at a time. */
+typedef struct tiff_set {
+    snow_context *context;
+    tiff_reader own, other;
+    size_t number; /* of `other` */
+    bool is_ome;
+    tiff_ome ome;
+    char uuid[64];         /* of the own file */
+    struct listed *listed; /* files of the folder with a UUID */
+    size_t listed_count;
+    bool has_listed;
+    int64_t renamed, strange; /* files of another name, of another UUID */
+} tiff_set;
+
+/* How the file's planes form volumes. */
+typedef struct tiff_plan {
+    tiff_page page;
+    tiff_shape shape;
+    int64_t planes;       /* that there should be */
+    int64_t present;      /* pages that are there, if nothing names them */
+    struct place *places; /* the page of each plane; NULL: in order */
+    bool raw;             /* ImageJ's: they lie behind the first page */
+    bool measured; /* the size of a pixel is known by the resolution alone */
+    /* Distances, in planes, of channels, slices and times. */
+    int64_t channel_step, slice_step, time_step;
+    int64_t channels, slices, times;
+} tiff_plan;
+
+/* Opens the source and reads its OME-XML, wherever that is.  The set is closed
+ * whatever the status.  Errors: SNOW_STATUS_BAD_INPUT, SNOW_STATUS_BAD_USAGE
+ * (no image of the name in the options). */
+snow_status snow_tiff_open_set(snow_source *source,
+                               const snow_volume_options *options,
+                               tiff_set *set);
+void snow_tiff_close_set(tiff_set *set);
+
+/* Opens member `n` of the set; *out is NULL if it is not there. */
+snow_status snow_tiff_open_member(tiff_set *set, size_t n, tiff_reader **out);
+
+/* Whether it is there, without opening it. */
+snow_status snow_tiff_find_member(tiff_set *set, size_t n);
+
+/* Adds the places of pages, from the open one to the last: all, or those that
+ * are no reduced copies, of which the first `most` must be like `page`. */
+snow_status snow_tiff_list_pages(tiff_reader *reader, bool all,
+                                 const tiff_page *page, int64_t most);
+
+/* Fails unless the current page, `number`, is like others. */
+snow_status snow_tiff_compare(snow_tiff *file, const tiff_page *page,
+                              int64_t number);
+
+/* Fails where next to nothing of an image is there. */
+snow_status snow_tiff_check_count(const tiff_set *set, int64_t present,
+                                  int64_t all);
+
+/* Finds the page of each plane of an OME image. */
+snow_status snow_tiff_place(tiff_set *set, tiff_plan *plan);
+
+/* Checks that the slices of a channel and time step are there, or that the
+ * options allow gaps: *gaps. */
+snow_status snow_tiff_check_planes(tiff_set *set, const tiff_plan *plan,
+                                   const snow_volume_options *options,
+                                   int64_t channel, int64_t time, bool *gaps);
+
+/* Reads one sample of their box; slices that are missing are left alone, and
+ * marked in `missing`. */
+snow_status snow_tiff_read_planes(tiff_set *set, const tiff_plan *plan,
+                                  int64_t first, int64_t sample,
+                                  const snow_region *region,
+                                  snow_volume *volume, bool *missing);
 
 /* Describes the current page.  Errors: SNOW_STATUS_BAD_INPUT if it is not
  * supported. */

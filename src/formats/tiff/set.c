@@ -1,0 +1,380 @@
+/* formats/tiff/set.c - the files of an OME image: each names all others, or the
+ * one that does.
+ *
+ * A file is found by its name beside the one that is opened, else by its UUID,
+ * as it may have been renamed.  One other file is open at a time. */
+#include "formats/array.h"
+#include "formats/tiff/tiff.h"
+#include "io/folder.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#if SNOW_HAVE_TIFF && !SNOW_LOADS
+
+/* A file of the folder. */
+struct listed {
+    char *name;
+    char uuid[64];
+};
+
+/* --- one file ------------------------------------------------------------- */
+
+snow_status snow_tiff_compare(snow_tiff *file, const tiff_page *page,
+                              int64_t number) {
+    tiff_page own;
+    SNOW_TRY(snow_tiff_describe(file, &own));
+    if (own.width == page->width && own.height == page->height &&
+        own.samples == page->samples && own.type == page->type &&
+        own.bits == page->bits && own.coding == page->coding)
+        return SNOW_STATUS_OK;
+    return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
+                     "page %lld has %lldx%lld pixels of %s, but the first has "
+                     "%lldx%lld of %s; all slices of a volume must be alike",
+                     (long long)number, (long long)own.width,
+                     (long long)own.height, snow_type_name(own.type),
+                     (long long)page->width, (long long)page->height,
+                     snow_type_name(page->type));
+}
+
+snow_status snow_tiff_list_pages(tiff_reader *reader, bool all,
+                                 const tiff_page *page, int64_t most) {
+    snow_tiff *file = &reader->file;
+    for (bool got = true; got;) {
+        uint32_t kind = 0;
+        TIFFGetFieldDefaulted(file->tiff, TIFFTAG_SUBFILETYPE, &kind);
+        /* Thumbnails of others are no slices. */
+        if (all || !reader->count || !(kind & FILETYPE_REDUCEDIMAGE)) {
+            if (page && reader->count && reader->count < most)
+                SNOW_TRY(snow_tiff_compare(file, page, reader->count));
+            SNOW_TRY(SNOW_RESERVE(file->context, reader->pages, reader->count,
+                                  reader->count + 1));
+            reader->pages[reader->count++] = TIFFCurrentDirOffset(file->tiff);
+        }
+        SNOW_TRY(snow_tiff_next(file, &got));
+    }
+    return SNOW_STATUS_OK;
+}
+
+static void close_reader(tiff_reader *reader) {
+    if (reader->open) {
+        snow_tiff_close(&reader->file);
+        snow_release(reader->file.context, reader->pages);
+    }
+    if (reader->source)
+        snow_source_close(reader->source);
+    *reader = (tiff_reader){.source = NULL};
+}
+
+/* Opens what a reader has a source of. */
+static snow_status open_reader(tiff_reader *reader, snow_source *source) {
+    reader->open = true; /* to be closed whatever the status */
+    return snow_tiff_open(source, &reader->file);
+}
+
+static const char *text_of(const tiff_reader *reader) {
+    char *text = NULL;
+    TIFFGetField(reader->file.tiff, TIFFTAG_IMAGEDESCRIPTION, &text);
+    return text;
+}
+
+/* The UUID of the element OME: the first attribute of that name. */
+static void find_uuid(const char *text, char out[64]) {
+    const char *at = text ? strstr(text, "OME ") : NULL;
+    const char *end = at ? strchr(at, '>') : NULL;
+    *out = 0;
+    at = at ? strstr(at, " UUID=") : NULL;
+    if (at && end && at < end)
+        snprintf(out, 64, "%.*s", (int)strcspn(at + 7, "\"'>"), at + 7);
+}
+
+/* --- all files ------------------------------------------------------------ */
+
+/* Looks which files there are, and which UUIDs they have. */
+static snow_status list_folder(tiff_set *set, const snow_source *beside) {
+    snow_folder folder = {.paths = NULL};
+    char *pattern;
+    set->has_listed = true;
+    SNOW_TRY(snow_source_path_beside(beside, "*", &pattern));
+    snow_status status = snow_folder_list(set->context, pattern, &folder);
+    snow_release(set->context, pattern);
+    for (size_t i = 0; i < folder.count && status == SNOW_STATUS_OK; i++) {
+        tiff_reader reader = {.source = NULL};
+        struct listed one = {.name = NULL};
+        const char *name = snow_path_name(folder.paths[i]);
+        if (!snow_format_has_name(&snow_format_tiff, name))
+            continue;
+        if (snow_source_open(set->context, folder.paths[i], &reader.source) ==
+                SNOW_STATUS_OK &&
+            open_reader(&reader, reader.source) == SNOW_STATUS_OK)
+            find_uuid(text_of(&reader), one.uuid);
+        close_reader(&reader);
+        if (!*one.uuid)
+            continue;
+        status = SNOW_RESERVE(set->context, set->listed, set->listed_count,
+                              set->listed_count + 1);
+        if (status == SNOW_STATUS_OK)
+            one.name = snow_allocate(set->context, strlen(name) + 1);
+        if (!one.name) {
+            status = SNOW_STATUS_NO_MEMORY;
+            continue;
+        }
+        memcpy(one.name, name, strlen(name) + 1);
+        set->listed[set->listed_count++] = one;
+    }
+    if (folder.paths)
+        snow_folder_free(&folder);
+    return status;
+}
+
+/* The file of the folder with a UUID; NULL if there is none. */
+static const char *file_of(const tiff_set *set, const char *uuid) {
+    for (size_t i = 0; i < set->listed_count; i++)
+        if (!strcmp(set->listed[i].uuid, uuid))
+            return set->listed[i].name;
+    return NULL;
+}
+
+/* Replaces a member's name. */
+static snow_status rename_member(tiff_set *set, tiff_member *member,
+                                 const char *name) {
+    tiff_ome *ome = &set->ome;
+    const size_t size = strlen(name) + 1;
+    SNOW_TRY(
+        SNOW_RESERVE(set->context, ome->text, ome->used, ome->used + size));
+    member->name = ome->used;
+    memcpy(ome->text + ome->used, name, size);
+    ome->used += size;
+    return SNOW_STATUS_OK;
+}
+
+/* Whether it is beside the file that was opened, by the name in the XML, which
+ * may begin with folders of another machine. */
+static snow_status find_by_name(tiff_set *set, const snow_source *beside,
+                                tiff_member *member, bool *found) {
+    const char *name = set->ome.text + member->name;
+    const char *last = name;
+    *found = false;
+    for (const char *at = name; *at; at++)
+        if (*at == '/' || *at == '\\')
+            last = at + 1;
+    if (!*last)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_source_look_for_sibling(beside, last, found));
+    member->name += (size_t)(last - name);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status find_by_uuid(tiff_set *set, const snow_source *beside,
+                                tiff_member *member, bool *found) {
+    *found = false;
+    if (!set->has_listed)
+        SNOW_TRY(list_folder(set, beside));
+    const char *name = file_of(set, set->ome.text + member->uuid);
+    if (!name)
+        return SNOW_STATUS_OK;
+    *found = true;
+    set->renamed++;
+    return rename_member(set, member, name);
+}
+
+/* Returns whether a member is the file that is opened. */
+static bool is_own(const tiff_set *set, const snow_source *own,
+                   const tiff_member *member) {
+    const char *name = set->ome.text + member->name;
+    const char *uuid = set->ome.text + member->uuid;
+    if (!set->own.open)
+        return false;
+    return (*uuid && !strcmp(uuid, set->uuid)) ||
+           (*name && !strcmp(name, snow_path_name(snow_source_name(own))));
+}
+
+snow_status snow_tiff_find_member(tiff_set *set, size_t n) {
+    tiff_member *member = &set->ome.members[n];
+    const snow_source *beside = set->own.source;
+    bool found;
+    if (member->state != TIFF_UNKNOWN)
+        return SNOW_STATUS_OK;
+    member->state = TIFF_OWN;
+    if (is_own(set, beside, member) ||
+        (!n && set->own.open && !*set->ome.elsewhere))
+        return SNOW_STATUS_OK;
+    member->state = TIFF_ABSENT;
+    if (!n && !*set->ome.elsewhere) /* a companion has no pages */
+        return SNOW_STATUS_OK;
+    if (!snow_source_has_siblings(beside))
+        found = false;
+    else
+        SNOW_TRY(find_by_name(set, beside, member, &found));
+    if (!found && set->ome.text[member->uuid] &&
+        snow_source_has_siblings(beside))
+        SNOW_TRY(find_by_uuid(set, beside, member, &found));
+    if (found)
+        member->state = TIFF_OTHER;
+    /* A file that stands alone was renamed, or came without its name. */
+    if (!found && set->ome.files == 1 && set->own.open && !*set->uuid) {
+        member->state = TIFF_OWN;
+        set->renamed++;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Closes the file that was open before. */
+static snow_status open_other(tiff_set *set, size_t n) {
+    tiff_member *member = &set->ome.members[n];
+    const char *name = set->ome.text + member->name;
+    tiff_reader *other = &set->other;
+    char uuid[64];
+    close_reader(other);
+    SNOW_TRY(snow_source_open_sibling(set->own.source, name, &other->source));
+    set->number = n;
+    snow_status status = open_reader(other, other->source);
+    if (status == SNOW_STATUS_OK)
+        status = snow_tiff_list_pages(other, true, NULL, 0);
+    if (status != SNOW_STATUS_OK)
+        return snow_fail_in_file(set->context, status,
+                                 snow_source_name(other->source));
+    member->bytes = snow_seekable_size(other->file.bytes);
+    if (!member->pages &&
+        TIFFSetSubDirectory(other->file.tiff, *other->pages)) {
+        find_uuid(text_of(other), uuid);
+        set->strange += *uuid && set->ome.text[member->uuid] &&
+                        strcmp(uuid, set->ome.text + member->uuid) != 0;
+    }
+    member->pages = other->count;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_tiff_open_member(tiff_set *set, size_t n, tiff_reader **out) {
+    tiff_member *member = &set->ome.members[n];
+    SNOW_TRY(snow_tiff_find_member(set, n));
+    *out = NULL;
+    if (member->state == TIFF_ABSENT)
+        return SNOW_STATUS_OK;
+    if (member->state == TIFF_OTHER && (!set->other.open || set->number != n))
+        SNOW_TRY(open_other(set, n));
+    *out = member->state == TIFF_OWN ? &set->own : &set->other;
+    if (member->state == TIFF_OWN) {
+        member->pages = set->own.count;
+        member->bytes = snow_seekable_size(set->own.file.bytes);
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* --- the XML -------------------------------------------------------------- */
+
+static snow_status read_text(tiff_set *set, const char *text,
+                             const char *wanted) {
+    snow_source *memory;
+    SNOW_TRY(snow_source_open_memory(set->context, "OME-XML", text,
+                                     strlen(text), &memory));
+    snow_status status = snow_tiff_read_ome(memory, wanted, &set->ome);
+    snow_source_close(memory);
+    return status;
+}
+
+/* Texts that are no UTF-8 have letters of Latin-1. */
+static snow_status read_letters(tiff_set *set, const char *text,
+                                const char *wanted) {
+    const size_t size = strlen(text);
+    char *clean = snow_allocate(set->context, 2 * size + 1), *at = clean;
+    if (!clean)
+        return SNOW_STATUS_NO_MEMORY;
+    snow_copy_name(text, clean, size + 1);
+    if (strcmp(clean, text) != 0) {
+        for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
+            if (*c >= 0x80)
+                *at++ = (char)(0xc0 | *c >> 6);
+            *at++ = (char)(*c >= 0x80 ? 0x80 | (*c & 0x3f) : *c);
+        }
+        *at = 0;
+    }
+    snow_status status = read_text(set, clean, wanted);
+    snow_release(set->context, clean);
+    return status;
+}
+
+/* The file that has the XML of this one is another of TIFF, or XML alone. */
+static snow_status follow(tiff_set *set, const char *wanted) {
+    char name[sizeof set->ome.elsewhere];
+    memcpy(name, set->ome.elsewhere, sizeof name);
+    unsigned char bytes[4];
+    size_t got;
+    snow_source *source;
+    snow_tiff_free_ome(set->context, &set->ome);
+    set->ome = (tiff_ome){.samples = 1};
+    SNOW_TRY(snow_source_open_sibling(set->own.source, name, &source));
+    tiff_reader reader = {.source = source};
+    snow_status status = snow_source_peek(source, bytes, 4, &got);
+    if (status == SNOW_STATUS_OK && !snow_tiff_probe(bytes, got)) {
+        status = snow_tiff_read_ome(source, wanted, &set->ome);
+    } else if (status == SNOW_STATUS_OK) {
+        status = open_reader(&reader, source);
+        const char *text = status == SNOW_STATUS_OK ? text_of(&reader) : NULL;
+        if (status == SNOW_STATUS_OK && text)
+            status = read_letters(set, text, wanted);
+    }
+    close_reader(&reader);
+    if (status == SNOW_STATUS_OK && !set->ome.run_count)
+        status =
+            snow_fail(set->context, SNOW_STATUS_BAD_INPUT,
+                      "%s, which should describe its planes, does not", name);
+    memcpy(set->ome.elsewhere, name, sizeof name);
+    return status == SNOW_STATUS_OK ? rename_member(set, set->ome.members, name)
+                                    : status;
+}
+
+/* XML that is damaged says nothing: the pages are slices in their order. */
+static snow_status read_own(tiff_set *set, const char *text,
+                            const char *wanted) {
+    snow_status status = read_letters(set, text, wanted);
+    set->is_ome = status == SNOW_STATUS_OK;
+    memcpy(set->uuid, set->ome.uuid, sizeof set->uuid);
+    if (status == SNOW_STATUS_BAD_INPUT) {
+        snow_notify(set->context,
+                    "its OME-XML is not used, and pages are slices in their "
+                    "order: %s",
+                    snow_context_message(set->context));
+        return SNOW_STATUS_OK;
+    }
+    if (set->is_ome && *set->ome.elsewhere && !set->ome.run_count)
+        status = follow(set, wanted);
+    return status;
+}
+
+snow_status snow_tiff_open_set(snow_source *source,
+                               const snow_volume_options *options,
+                               tiff_set *set) {
+    const char *wanted = options->dataset ? options->dataset : options->series;
+    unsigned char bytes[4];
+    size_t got;
+    *set = (tiff_set){.context = snow_source_context(source)};
+    set->own.source = source;
+    SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &got));
+    if (!snow_tiff_probe(bytes, got)) {
+        set->is_ome = true;
+        return snow_tiff_read_ome(source, wanted, &set->ome);
+    }
+    SNOW_TRY(open_reader(&set->own, source));
+    const char *text = text_of(&set->own);
+    if (text && (strstr(text, "<OME") || strstr(text, ":OME ")))
+        SNOW_TRY(read_own(set, text, wanted));
+    if (wanted && !set->is_ome)
+        return snow_fail(set->context, SNOW_STATUS_BAD_USAGE,
+                         "--dataset %.64s: the file has no images by name; "
+                         "remove the option",
+                         wanted);
+    return SNOW_STATUS_OK;
+}
+
+void snow_tiff_close_set(tiff_set *set) {
+    set->own.source = NULL; /* the caller's */
+    close_reader(&set->own);
+    close_reader(&set->other);
+    snow_tiff_free_ome(set->context, &set->ome);
+    for (size_t i = 0; i < set->listed_count; i++)
+        snow_release(set->context, set->listed[i].name);
+    snow_release(set->context, set->listed);
+}
+
+#endif
