@@ -101,6 +101,41 @@ entries = int(np.frombuffer(whole, order + "u2", 1, second)[0])
 oracle.patch("g.tif", second + 2 + 12 * entries, bytes(4))  # the next page
 oracle.expect("g.tif", h[0, :, 0], name="ImageJ, one page")
 
+# The shape of tifffile: with names of axes and without, one page or all.
+five = oracle.sample("u2", (2, 3, 4, 6, 5))
+for truncate in (False, True):
+    for axes in ("TCZYX", "CTZYX", "ZTCYX", "QCZYX"):
+        tifffile.imwrite("s.tif", five, photometric="minisblack",
+                         truncate=truncate, metadata={"axes": axes})
+        order = ["TCZ".find(k) for k in axes[:3].replace("Q", "T")]
+        seen = tifffile.imread("s.tif").transpose(
+            [order.index(k) for k in range(3)] + [3, 4])
+        for t in range(seen.shape[0]):
+            oracle.expect("s.tif", seen[t, 1], name=f"{axes} {truncate}",
+                          options=["--time", t, "--channel", 1])
+    for a in (five[:, 0], five[0], five):
+        tifffile.imwrite("s.tif", a, photometric="minisblack",
+                         truncate=truncate)
+        steps = tifffile.imread("s.tif").reshape(-1, 4, 6, 5)
+        oracle.expect("s.tif", steps[1], options=["--time", 1],
+                      name=f"{a.shape} {truncate}")
+        oracle.says(a.shape, "s.tif", f"{len(steps)} time steps of 4 slices")
+many = oracle.sample("u1", (2, 4, 6, 5, 3))
+tifffile.imwrite("s.tif", many, photometric="rgb")
+oracle.expect("s.tif", many[1, ..., 2],
+              options=["--time", 1, "--channel", 2], name="colours")
+tifffile.imwrite("s.tif", many[0, ..., 0], photometric="minisblack",
+                 description="shape=(4, 6, 5)", metadata=None)
+oracle.expect("s.tif", many[0, ..., 0], name="shape=")
+tifffile.imwrite("s.tif", many, photometric="minisblack",
+                 metadata={"axes": "TZYXC"})
+oracle.refuse("s.tif", "no slices")
+with tifffile.TiffWriter("s.tif") as writer:
+    writer.write(five[0, 0], photometric="minisblack")
+    writer.write(five[0, 1], photometric="minisblack")
+oracle.expect("s.tif", tifffile.imread("s.tif", series=0), name="two arrays")
+oracle.says("two arrays", "s.tif", "4 pages beyond")
+
 # OME: every order of channels, slices and times.
 for axes in ("TZCYX", "TCZYX", "CTZYX", "ZTCYX", "CZTYX", "ZCTYX"):
     turned = np.transpose(h, ["TZC".index(a) for a in axes[:3]] + [3, 4])

@@ -162,7 +162,8 @@ static snow_status plan_pages(tiff_set *set, tiff_plan *plan) {
         shape->channels = shape->frames = 1;
         shape->slices = all;
     }
-    memcpy(shape->order, "XYCZT", sizeof shape->order);
+    if (!*shape->order)
+        memcpy(shape->order, "XYCZT", sizeof shape->order);
     SNOW_TRY(share_planes(set->context, plan));
     if (plan->present > plan->planes)
         snow_notify(set->context,
@@ -230,6 +231,8 @@ static snow_status make_plan(tiff_set *set, tiff_plan *plan,
         SNOW_TRY(snow_tiff_describe(&reader->file, &plan->page));
         TIFFGetField(reader->file.tiff, TIFFTAG_IMAGEDESCRIPTION, &text);
         snow_tiff_read_text(text, &plan->shape);
+        SNOW_TRY(snow_tiff_read_shape(set->context, text, &plan->page,
+                                      &plan->shape));
         SNOW_TRY(plan_pages(set, plan));
     }
     take_matrix(&reader->file, plan, info);

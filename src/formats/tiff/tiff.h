@@ -1,7 +1,8 @@
 /* formats/tiff/tiff.h - the parts of the TIFF reader, private to this folder.
  *
  *   tiff.c   the file -> the pages that are slices, the volume
- *   text.c   descriptions by ImageJ and tifffile -> tiff_shape
+ *   text.c   descriptions by ImageJ -> tiff_shape
+ *   shaped.c   those by tifffile
  *   ome.c    OME-XML -> tiff_shape, and which page has which plane
  *   set.c    the files that OME-XML names
  *   planes.c   planes that are there or missing -> the volume's voxels
@@ -176,6 +177,11 @@ snow_status snow_tiff_read_planes(tiff_set *set, const tiff_plan *plan,
 /* Describes the current page.  Errors: SNOW_STATUS_BAD_INPUT if it is not
  * supported. */
 snow_status snow_tiff_describe(snow_tiff *file, tiff_page *out);
+
+/* Takes channels, slices and frames from the shape of an array, if the text has
+ * one of such pages.  Errors: SNOW_STATUS_BAD_INPUT (axes in no such order). */
+snow_status snow_tiff_read_shape(snow_context *context, const char *text,
+                                 const tiff_page *page, tiff_shape *out);
 
 /* Adds what the current page says of channels beside its description. */
 void snow_tiff_read_channels(const snow_tiff *file, const tiff_page *page,
