@@ -66,6 +66,7 @@ typedef struct snow_volume_info {
     bool whole;       /* whole numbers, masked */
     int64_t channels; /* of voxels with several values; else 0 or 1 */
     snow_channel channel[SNOW_CHANNELS_MAX]; /* the first of them */
+    bool negative; /* high values are dark, says the file */
 } snow_volume_info;
 SNOW_RECORD(snow_volume_info);
 typedef enum snow_endian {   /* byte order of raw data */
@@ -101,7 +102,7 @@ typedef struct snow_volume_options {
     const char *labels; /* of the mask, else the volume; NULL: all but 0 */
     double clip[SNOW_CLIPS_MAX][4]; /* planes (snow_volume_clip) */
     bool each_time, channel_given;  /* no warning of other steps or channels */
-    bool allow_gaps; /* missing and cut slices are NaN, with a warning */
+    bool allow_gaps;       /* missing and cut slices are NaN, with a warning */
     const char *component; /* "x", "magnitude", ... or NULL (docs/formats.md) */
     const char *label_table; /* path: names and colours of labels; or NULL */
     bool each_channel, time_given; /* no warning of others: channels, steps */

@@ -82,25 +82,134 @@ static snow_status choose_files(stack *s, const char *path,
     return SNOW_STATUS_OK;
 }
 
-/* Numbers may begin anywhere but must have equal steps. */
-static snow_status check_numbers(const stack *s) {
-    char *const *paths = s->files->paths;
+#define DIGITS "0123456789"
+
+/* Returns whether two names differ in their numbers only. */
+static bool same_form(const char *a, const char *b) {
+    for (;; a++, b++) {
+        const size_t x = strspn(a, DIGITS), y = strspn(b, DIGITS);
+        if (!x != !y || a[x] != b[y])
+            return false;
+        a += x;
+        b += y;
+        if (!*a)
+            return true;
+    }
+}
+
+/* Number `which` of a name, from 0; -1 if there is none. */
+static int64_t number_at(const char *path, int which) {
+    const char *at = snow_path_name(path);
+    for (at += strcspn(at, DIGITS); *at && which; which--) {
+        at += strspn(at, DIGITS);
+        at += strcspn(at, DIGITS);
+    }
+    int64_t value = *at ? 0 : -1;
+    for (; *at >= '0' && *at <= '9'; at++)
+        value = (value * 10 + (*at - '0')) % 1000000000000000000;
+    return value;
+}
+
+/* The first name of the form that most names with a number have; *count of
+ * them.  Of many forms none is that of a stack. */
+static const char *usual_form(const snow_folder *files, size_t *count,
+                              size_t *numbered) {
+    const char *forms[8], *best = NULL;
+    size_t counts[8] = {0}, used = 0;
+    *count = *numbered = 0;
+    for (size_t i = 0; i < files->count; i++) {
+        const char *name = snow_path_name(files->paths[i]);
+        size_t n = 0;
+        if (!name[strcspn(name, DIGITS)])
+            continue;
+        ++*numbered;
+        while (n < used && !same_form(forms[n], name))
+            n++;
+        if (n == used && used < 8)
+            forms[used++] = name;
+        if (n < used && ++counts[n] > *count) {
+            *count = counts[n];
+            best = forms[n];
+        }
+    }
+    return best;
+}
+
+/* Keeps names with a number, as previews and masks beside slices have none; a
+ * second name with one is a second stack. */
+static snow_status choose_names(stack *s, snow_folder *files) {
+    size_t count, numbered, kept = 0, left = 0;
+    char list[160] = "";
+    const char *form = usual_form(files, &count, &numbered);
+    if (2 * numbered <= files->count) /* letters may be the order */
+        return SNOW_STATUS_OK;
+    for (size_t i = 0; i < files->count; i++) {
+        const char *name = snow_path_name(files->paths[i]);
+        const bool has = name[strcspn(name, DIGITS)] != 0;
+        if (has && 2 * count >= numbered && !same_form(form, name))
+            return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
+                             "%s is numbered, but is none of the slices such "
+                             "as %s; give a pattern that matches one of them",
+                             name, form);
+        if (has) {
+            files->paths[kept++] = files->paths[i];
+            continue;
+        }
+        const size_t used = strlen(list);
+        if (left++ < 3)
+            snprintf(list + used, sizeof list - used, "%s%.48s",
+                     used ? ", " : "", name);
+    }
+    files->count = kept;
+    if (left)
+        snow_notify(s->context, "%zu file%s without a number %s left out: %s%s",
+                    left, left > 1 ? "s" : "", left > 1 ? "are" : "is", list,
+                    left > 3 ? ", ..." : "");
+    return SNOW_STATUS_OK;
+}
+
+/* Returns the first file whose number is not a step after that before it, as
+ * the first two are; 0: there is none. */
+static size_t uneven_at(const snow_folder *files, int which, bool *varies) {
     int64_t step = 0;
-    for (size_t i = 1; i < s->files->count; i++) {
-        int64_t a = snow_last_number(paths[i - 1]);
-        int64_t b = snow_last_number(paths[i]);
-        if (a < 0 || b < 0)
-            return SNOW_STATUS_OK; /* names without numbers have no gaps */
+    *varies = false;
+    for (size_t i = 1; i < files->count; i++) {
+        const int64_t a = number_at(files->paths[i - 1], which);
+        const int64_t b = number_at(files->paths[i], which);
+        *varies |= a != b;
         if (i == 1)
             step = b - a;
         if (b - a != step)
-            return snow_fail(
-                s->context, SNOW_STATUS_BAD_INPUT,
-                "its files are not numbered in equal steps (%s, then %s); add "
-                "the missing slices, or give a pattern that matches the others",
-                paths[i - 1], paths[i]);
+            return i;
     }
-    return SNOW_STATUS_OK;
+    return 0;
+}
+
+/* Numbers may begin anywhere, but one of each name must have equal steps. */
+static snow_status check_numbers(const stack *s) {
+    const snow_folder *files = s->files;
+    size_t uneven = 0;
+    bool any = false;
+    for (int which = 0; files->count > 1; which++) {
+        bool varies, all = true;
+        for (size_t i = 0; i < files->count && all; i++)
+            all = number_at(files->paths[i], which) >= 0;
+        if (!all)
+            break;
+        const size_t at = uneven_at(files, which, &varies);
+        if (!at && varies)
+            return SNOW_STATUS_OK;
+        uneven = at && varies ? at : uneven;
+        any = true;
+    }
+    if (!any) /* names without numbers have no gaps */
+        return SNOW_STATUS_OK;
+    return snow_fail(
+        s->context, SNOW_STATUS_BAD_INPUT,
+        "its files are not numbered in equal steps (%s, then %s); add "
+        "the missing slices, or give a pattern that matches the others",
+        files->paths[uneven ? uneven - 1 : 0],
+        files->paths[uneven ? uneven : 1]);
 }
 
 /* Opens a file; messages begin with its name. */
@@ -217,7 +326,8 @@ static bool is_set(const stack *s, const snow_volume_options *options) {
 
 /* The box is applied to all slices along z, then each slice is cropped alike.
  * The first slice gives the size for a box without an end. */
-static snow_status read_stack(stack *s, const snow_volume_options *options,
+static snow_status read_stack(stack *s, snow_folder *files,
+                              const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
     snow_region window;
     if (options->series)
@@ -229,6 +339,7 @@ static snow_status read_stack(stack *s, const snow_volume_options *options,
     if (is_set(s, options))
         return read_file(s, 0, info, out);
     memset(s->options.crop, 0, sizeof s->options.crop);
+    SNOW_TRY(choose_names(s, files));
     SNOW_TRY(check_numbers(s));
     SNOW_TRY(look_at_first(s));
     *info = s->slice;
@@ -267,7 +378,7 @@ snow_status snow_stack_read(snow_context *context, const char *path,
     } else {
         status = choose_files(&s, path, &files);
         if (status == SNOW_STATUS_OK)
-            status = read_stack(&s, options, info, out);
+            status = read_stack(&s, &files, options, info, out);
     }
     snow_folder_free(&files);
     return status;

@@ -20,9 +20,6 @@ const char *snow_path_name(const char *path) {
 /* More files than any image series has. */
 #define MOST_FILES ((size_t)1 << 24)
 
-/* The most digits that cannot overflow. */
-#define MOST_DIGITS 18
-
 /* 0: nothing, or the look-up has failed. */
 static mode_t mode_of(snow_context *context, const char *path) {
     mode_t mode = 0;
@@ -248,18 +245,4 @@ bool snow_folder_below(const char *path, char *name, size_t capacity) {
 
 void snow_folder_free(snow_folder *folder) {
     snow_release(folder->context, folder->paths);
-}
-
-int64_t snow_last_number(const char *path) {
-    const char *part = snow_path_name(path), *end = part + strlen(part);
-    while (end > part && !isdigit((unsigned char)end[-1]))
-        end--;
-    const char *at = end;
-    while (at > part && isdigit((unsigned char)at[-1]) &&
-           end - at < MOST_DIGITS)
-        at--;
-    int64_t value = at == end ? -1 : 0;
-    for (; at < end; at++)
-        value = value * 10 + (*at - '0');
-    return value;
 }

@@ -47,7 +47,4 @@ void snow_folder_free(snow_folder *folder);
 /* Natural order, "s2" before "s10": below, equal or above 0. */
 int snow_name_compare(const char *a, const char *b);
 
-/* The last number in a path's last component; -1 if there is none. */
-int64_t snow_last_number(const char *path);
-
 #endif

@@ -277,6 +277,9 @@ static snow_status build_look(const snow_histogram *histogram,
                 low, high);
     }
     const char *map = look->colormap ? look->colormap : builder->colormap;
+    if (!look->colormap && histogram->volume->info.negative && look->preset &&
+        !strcmp(look->preset, "linear"))
+        map = "grey_r";
     if (map && !builder->labels) /* which have taken theirs */
         snow_transfer_builder_colormap(builder, map, builder->low,
                                        builder->high);

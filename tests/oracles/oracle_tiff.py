@@ -136,6 +136,87 @@ with tifffile.TiffWriter("s.tif") as writer:
 oracle.expect("s.tif", tifffile.imread("s.tif", series=0), name="two arrays")
 oracle.says("two arrays", "s.tif", "4 pages beyond")
 
+
+
+def pages_of(path, values, bits, **tags):
+    """Pages whose samples are packed from the high bit on, by hand: tifffile
+    leaves packed samples to another package."""
+    out = bytearray(b"II*\0\0\0\0\0")
+    link = 4
+    for page in values:
+        strip = b""
+        for row in page.reshape(len(page), -1):
+            shifts = np.arange(bits)[::-1]
+            strip += np.packbits(row.astype("i8")[:, None] >> shifts & 1).tobytes()
+        strip += bytes(len(strip) % 2)
+        out[link:link + 4] = len(out + strip).to_bytes(4, "little")
+        y, x = page.shape[:2]
+        samples = page.shape[2] if page.ndim > 2 else 1
+        entries = {256: x, 257: y, 258: bits, 259: 1, 262: 1, 273: len(out),
+                   277: samples, 278: y, 279: len(strip), 339: 1}
+        for tag, value in tags.items():
+            entries[int(tag[1:])] = value
+        out += strip + len(entries).to_bytes(2, "little")
+        for tag, value in entries.items():
+            kind = 3 if tag in (258, 259, 262, 277, 339) else 4
+            if tag == 258 and samples > 1:  # a place that has them
+                value = 8
+            out += b"".join(v.to_bytes(n, "little") for v, n in (
+                (tag, 2), (kind, 2), (1, 4), (value, 4)))
+        link = len(out)
+        out += bytes(4)
+    oracle.put(path, bytes(out))
+
+
+# Samples of other sizes than bytes; 0 that is white; signs.
+for depth in (1, 2, 3, 4, 6, 10, 12, 14, 20, 31):
+    kind = np.dtype("u1" if depth < 8 else "u2" if depth < 16 else "u4")
+    a = (oracle.sample(kind, (3, 5, 7)) >> (8 * kind.itemsize - depth))
+    pages_of("v.tif", a, depth)
+    oracle.expect("v.tif", a, name=f"{depth} bits")
+    pages_of("v.tif", a, depth, t262=0)
+    oracle.expect("v.tif", (2 ** depth - 1 - a).astype(kind),
+                  name=f"{depth} bits, 0 white")
+    if depth == 12:
+        twos = a.astype("i4") - 4096 * (a > 2047)
+        pages_of("v.tif", a, depth, t339=2)
+        oracle.expect("v.tif", twos.astype("i2"), name="12 bits, signed")
+for kind in ("u1", "u2", "u4", "i1", "i2", "f4"):
+    a = oracle.sample(kind)
+    top = {"u": 2 ** (8 * a.itemsize) - 1, "i": -1}.get(kind[0])
+    tifffile.imwrite("v.tif", a, photometric="miniswhite", metadata=None)
+    oracle.expect("v.tif", a if top is None else (top - a.astype("i8"))
+                  .astype(kind), name=f"{kind}, 0 white")
+    oracle.says(kind, "v.tif", "0 is white")
+a = oracle.sample("u2")
+text = "ImageJ=1.53t\nimages=7\nslices=7\n"
+tifffile.imwrite("v.tif", a, photometric="miniswhite", metadata=None,
+                 description=text)
+oracle.expect("v.tif", a, name="ImageJ, 0 white")
+
+# ImageJ's calibration of values (ij.measure.Calibration).
+for line, values in (("cf=0\nc0=-32768.0\nc1=1.0\nvunit=Gray Value\n",
+                      a - 32768.0),
+                     ("cf=0\nc0=-1024\nc1=0.5\nvunit=HU\n", a * .5 - 1024),
+                     ("cf=20\nc0=1\nc1=2\n", a), ("c0=1\nc1=2\n", a),
+                     ("cf=1\nc0=1\nc1=2\nc2=1\n", a)):
+    tifffile.imwrite("v.tif", a, photometric="minisblack", metadata=None,
+                     description=text + line)
+    oracle.expect("v.tif", values, name=line, dtype="u2")
+    oracle.says(line, "v.tif", "no straight" if "cf=1\n" in line else None)
+
+# GDAL's missing values, also one that the type does not have.
+for kind, missing in (("u1", "255"), ("i2", "-9999"), ("u2", "-9999"),
+                      ("f4", "-3.4028234e+38"), ("f4", "nan")):
+    a = oracle.sample(kind)
+    wanted = a
+    if (kind, missing) not in (("u2", "-9999"), ("f4", "nan")):
+        a[:, :2] = float(missing)
+        wanted = np.where(a == a[0, 0, 0], np.nan, a).astype("f4")
+    tifffile.imwrite("v.tif", a, photometric="minisblack", metadata=None,
+                     extratags=[(42113, 2, 0, missing, True)])
+    oracle.expect("v.tif", wanted, name=f"nodata {missing} of {kind}")
+
 # OME: every order of channels, slices and times.
 for axes in ("TZCYX", "TCZYX", "CTZYX", "ZTCYX", "CZTYX", "ZCTYX"):
     turned = np.transpose(h, ["TZC".index(a) for a in axes[:3]] + [3, 4])
@@ -173,6 +254,26 @@ oracle.refuse("stack", "must be alike")
 oracle.refuse("none*.tif", "no slices")
 os.mkdir("empty")
 oracle.refuse("empty", "no slices")
+
+# Which names are slices: those that differ in a number.
+for names, more, said in (
+        ("s_%03d.tif", ("MAX_stack.tif",), "left out: MAX_stack.tif"),
+        ("s_%03d.tif", ("mask.tif", "s_flat.tif"), "left out: mask.tif, s_fl"),
+        ("s_%d_512x512.tif", (), None), ("s_%d_c0.tif", (), None),
+        ("2020-01-02_%d.tif", (), None),
+        ("s_%03d.tif", ("view_1.tif",), 3), ("s_%03d.tif", ("s_9_old.tif",), 3),
+        ("s_%03d.tif", ("s_002 (1).tif",), 3),
+        ("z_%d_c0.tif", ("z_0_c1.tif",), 3), ("z_%d_c0.tif", ("z_7_c0.tif",), 3)):
+    oracle.empty_folder("names")
+    for z in range(5):
+        tifffile.imwrite("names/" + names % z, a[z], photometric="minisblack")
+    for name in more:
+        tifffile.imwrite(f"names/{name}", a[9], photometric="minisblack")
+    if said == 3:
+        oracle.refuse("names", more[0])
+        continue
+    oracle.expect("names", a[:5], name=f"{names} beside {more}")
+    oracle.says(names, "names", said)
 
 # Pages that differ, files that are cut.
 with tifffile.TiffWriter("j.tif") as writer:

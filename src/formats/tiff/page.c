@@ -12,19 +12,15 @@
 /* --- the layout of a page ------------------------------------------------- */
 
 static snow_type integer_type(uint16_t bits, bool is_signed) {
-    switch (bits) {
-    case 8:
+    if (bits <= 8)
         return is_signed ? SNOW_TYPE_INT8 : SNOW_TYPE_UINT8;
-    case 16:
+    if (bits <= 16)
         return is_signed ? SNOW_TYPE_INT16 : SNOW_TYPE_UINT16;
-    case 24:
-    case 32:
+    if (bits <= 32)
         return is_signed ? SNOW_TYPE_INT32 : SNOW_TYPE_UINT32;
-    case 64:
+    if (bits == 64)
         return is_signed ? SNOW_TYPE_INT64 : SNOW_TYPE_UINT64;
-    default:
-        return SNOW_TYPE_NONE;
-    }
+    return SNOW_TYPE_NONE;
 }
 
 static bool parse_type(uint16_t bits, uint16_t format, tiff_page *page) {
@@ -36,16 +32,28 @@ static bool parse_type(uint16_t bits, uint16_t format, tiff_page *page) {
         page->type = bits == 16 || bits == 32 ? SNOW_TYPE_FLOAT32
                      : bits == 64             ? SNOW_TYPE_FLOAT64
                                               : SNOW_TYPE_NONE;
-    } else if (bits == 1) {
-        page->coding = TIFF_BIT;
-        page->type = SNOW_TYPE_UINT8;
-    } else if (format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_INT ||
-               format == SAMPLEFORMAT_VOID) {
+    } else if (bits &&
+               (format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_INT ||
+                format == SAMPLEFORMAT_VOID || bits == 1)) {
         if (bits == 24)
             page->coding = TIFF_TRIPLE;
-        page->type = integer_type(bits, format == SAMPLEFORMAT_INT);
+        else if (bits % 8)
+            page->coding = TIFF_PACKED;
+        page->is_signed = format == SAMPLEFORMAT_INT && bits > 1;
+        page->type = integer_type(bits, page->is_signed);
     }
     return page->type != SNOW_TYPE_NONE;
+}
+
+/* Inverted, v is 2^n - 1 - v of n bits, or -1 - v with a sign: all bits are
+ * others.  Values of ImageJ and floats are kept. */
+static uint64_t flip_of(TIFF *tiff, const tiff_page *page) {
+    char *text = NULL;
+    TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text);
+    if (!page->white || page->type >= SNOW_TYPE_FLOAT32 ||
+        (text && !strncmp(text, "ImageJ=", 7)))
+        return 0;
+    return page->is_signed ? UINT64_MAX : UINT64_MAX >> (64 - page->bits);
 }
 
 static uint16_t short_field(TIFF *tiff, uint32_t tag) {
@@ -70,10 +78,11 @@ snow_status snow_tiff_describe(snow_tiff *file, tiff_page *out) {
         short_field(tiff, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE;
     uint16_t format = short_field(tiff, TIFFTAG_SAMPLEFORMAT);
     if (!parse_type(page.bits, format, &page))
-        return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
-                         "has values of %u bits in format %u, which is not "
-                         "supported; write integers of 8 to 64 bits or floats",
-                         page.bits, format);
+        return snow_fail(
+            file->context, SNOW_STATUS_BAD_INPUT,
+            "has values of %u bits in format %u, which is not "
+            "supported; write integers of 1 to 32 or 64 bits, or floats",
+            page.bits, format);
     if (width < 1 || height < 1 || depth > 1 || page.samples < 1)
         return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
                          "its pages have no valid size or depth for slices; "
@@ -89,6 +98,8 @@ snow_status snow_tiff_describe(snow_tiff *file, tiff_page *out) {
         return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
                          "its colours are stored as luminance and chrominance; "
                          "write it again as grey or RGB");
+    page.white = colors == PHOTOMETRIC_MINISWHITE;
+    page.flip = flip_of(tiff, &page);
     *out = page;
     return SNOW_STATUS_OK;
 }
@@ -151,27 +162,49 @@ static void put_value(const tiff_page *page, const unsigned char *at,
     }
 }
 
+/* Bits from the high one of each byte on; rows begin at bytes. */
+static void put_packed(const tiff_page *page, const unsigned char *row,
+                       uint64_t at, unsigned char *out) {
+    uint64_t value = 0;
+    for (uint64_t bit = at * page->bits; bit < (at + 1) * page->bits; bit++)
+        value = value << 1 | (row[bit / 8] >> (7 - bit % 8) & 1);
+    if (page->is_signed && value >> (page->bits - 1))
+        value |= UINT64_MAX << page->bits;
+    const uint32_t wide = (uint32_t)value;
+    const uint16_t half = (uint16_t)value;
+    const size_t size = snow_type_size(page->type);
+    *out = (unsigned char)value;
+    if (size > 1)
+        memcpy(out, size == 2 ? (const void *)&half : &wide, size);
+}
+
+static void flip(const tiff_page *page, int64_t count, unsigned char *out) {
+    const size_t size = snow_type_size(page->type);
+    for (size_t i = 0; i < (size_t)count * size; i++) {
+        const size_t byte =
+            snow_machine_big_endian() ? size - 1 - i % size : i % size;
+        out[i] ^= (unsigned char)(page->flip >> (8 * byte));
+    }
+}
+
 /* Copies one sample of a row's pixels from `first` on. */
 static void put_row(const tiff_page *page, const tiff_block *block,
                     const unsigned char *row, int64_t first, int64_t sample,
                     int64_t count, unsigned char *out) {
-    size_t size = page->bits / 8, wide = snow_type_size(page->type);
-    uint64_t at = (uint64_t)(first * block->samples + sample);
-    if (page->coding == TIFF_BIT) {
+    const size_t size = page->bits / 8, wide = snow_type_size(page->type);
+    const uint64_t at = (uint64_t)(first * block->samples + sample);
+    if (page->coding == TIFF_PLAIN && block->samples == 1)
+        memcpy(out, row + at * size, (size_t)count * size);
+    else
         for (int64_t i = 0; i < count; i++) {
-            uint64_t bit = at + (uint64_t)(i * block->samples);
-            out[i] = row[bit / 8] >> (7 - bit % 8) & 1;
+            const uint64_t from = at + (uint64_t)(i * block->samples);
+            if (page->coding == TIFF_PACKED)
+                put_packed(page, row, from, out + (size_t)i * wide);
+            else
+                put_value(page, row + from * size, out + (size_t)i * wide);
         }
-        return;
-    }
-    row += at * size;
-    if (page->coding == TIFF_PLAIN && block->samples == 1) {
-        memcpy(out, row, (size_t)count * size);
-        return;
-    }
-    for (int64_t i = 0; i < count; i++)
-        put_value(page, row + (uint64_t)(i * block->samples) * size,
-                  out + (size_t)i * wide);
+    if (page->flip && !sample)
+        flip(page, count, out);
 }
 
 /* Copies the part of a block that is in the box. */

@@ -283,6 +283,7 @@ static snow_status read_wanted(tiff_set *set, const tiff_plan *plan,
      * another compression. */
     SNOW_TRY(snow_tiff_compare(&reader->file, &plan->page, one->at.page));
     SNOW_TRY(snow_tiff_describe(&reader->file, &page));
+    page.flip = plan->page.flip;
     return snow_tiff_read_page(&reader->file, &page, sample, region, slice);
 }
 

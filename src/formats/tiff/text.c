@@ -66,6 +66,21 @@ void snow_tiff_take_unit(const char *text, char unit[16]) {
         memcpy(unit, text, strlen(text) + 1);
 }
 
+/* Values of a straight line (cf=0), as ij.measure.Calibration has them. */
+static void take_calibration(const char *text, tiff_shape *out) {
+    char value[VALUE_BYTES];
+    double line[2];
+    if (line_value(text, "vunit", value) && strcmp(value, "Gray Value") != 0)
+        snow_copy_name(value, out->value_unit, sizeof out->value_unit);
+    out->bent = line_value(text, "cf", value) && strcmp(value, "0") != 0 &&
+                strcmp(value, "20") != 0;
+    if (line_value(text, "cf", value) && !strcmp(value, "0") &&
+        line_value(text, "c0", value) && snow_parse_double(value, &line[0]) &&
+        line_value(text, "c1", value) && snow_parse_double(value, &line[1]) &&
+        isfinite(line[0]) && isfinite(line[1]) && line[1] != 0)
+        memcpy(out->scale, line, sizeof line);
+}
+
 static void read_imagej(const char *text, tiff_shape *out) {
     char value[VALUE_BYTES];
     out->imagej = true;
@@ -83,6 +98,7 @@ static void read_imagej(const char *text, tiff_shape *out) {
         out->spacing[2] = length_of(value + (*value == '-'));
     if (line_value(text, "unit", value))
         snow_tiff_take_unit(value, out->unit);
+    take_calibration(text, out);
 }
 
 double snow_tiff_metres(const char *unit) {
@@ -98,7 +114,7 @@ double snow_tiff_metres(const char *unit) {
 }
 
 void snow_tiff_read_text(const char *text, tiff_shape *out) {
-    *out = (tiff_shape){0};
+    *out = (tiff_shape){.scale = {0, 1}, .nodata = NAN};
     for (int n = 0; n < SNOW_CHANNELS_MAX; n++)
         out->channel[n].color[0] = -1;
     if (!text)

@@ -124,23 +124,31 @@ static void describe_channels(const tiff_plan *plan, snow_volume_info *info) {
         info->channel[samples - 1].shown = false;
 }
 
-/* Where one page is followed by all planes, as ImageJ writes more than 4 GB,
- * those that are there. */
-static void count_raw(const snow_tiff *file, tiff_plan *plan) {
+/* Where one page is followed by all planes, as ImageJ writes more than 4 GB and
+ * MetaMorph all, those that are there. */
+static snow_status count_raw(const snow_tiff *file, tiff_plan *plan) {
     const tiff_page *page = &plan->page;
-    uint64_t *offsets = NULL;
-    const uint64_t size = snow_seekable_size(file->bytes);
+    const bool stk = plan->shape.metamorph;
+    const uint64_t at = TIFFCurrentDirOffset(file->tiff);
     const uint64_t plane =
         TIFFScanlineSize64(file->tiff) * (uint64_t)page->height;
-    plan->raw =
-        plan->present == 1 && plan->planes > 1 && page->coding == TIFF_PLAIN &&
-        !page->separate && page->compression == COMPRESSION_NONE && plane &&
-        TIFFGetField(file->tiff, TIFFTAG_STRIPOFFSETS, &offsets) && offsets &&
-        *offsets < size && TIFFCurrentDirOffset(file->tiff) < *offsets;
+    uint64_t *offsets = NULL, end = snow_seekable_size(file->bytes);
+    plan->raw = plan->present == 1 && plan->planes > 1 &&
+                page->coding == TIFF_PLAIN && !page->separate && plane &&
+                page->compression == COMPRESSION_NONE &&
+                TIFFGetField(file->tiff, TIFFTAG_STRIPOFFSETS, &offsets) &&
+                offsets && *offsets < end && (stk || at < *offsets);
+    if (stk && !plan->raw)
+        return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
+                         "is a stack of MetaMorph (.stk) whose planes are "
+                         "packed; save it as TIFF with ImageJ");
+    if (plan->raw && at > *offsets && at < end)
+        end = at;
     if (plan->raw)
-        plan->present = (int64_t)((size - *offsets) / plane);
+        plan->present = (int64_t)((end - *offsets) / plane);
     if (plan->raw && plan->present > plan->planes)
         plan->present = plan->planes;
+    return SNOW_STATUS_OK;
 }
 
 /* Channels, slices and times of ImageJ count if their product is the number of
@@ -173,7 +181,7 @@ static snow_status plan_pages(tiff_set *set, tiff_plan *plan) {
                     (long long)plan->planes);
     if (plan->present > plan->planes)
         plan->present = plan->planes;
-    count_raw(&own->file, plan);
+    SNOW_TRY(count_raw(&own->file, plan));
     return snow_tiff_check_count(set, plan->present, plan->planes);
 }
 
@@ -221,6 +229,23 @@ static void take_matrix(snow_tiff *file, tiff_plan *plan,
     memcpy(info->unit, shape->unit, sizeof info->unit);
 }
 
+/* ImageJ calibrates samples of 8 and 16 bits; ranges are of stored values. */
+static void take_calibration(const tiff_plan *plan, snow_volume_info *info) {
+    const tiff_shape *shape = &plan->shape;
+    if (plan->page.samples > 1 || info->type > SNOW_TYPE_UINT16)
+        return;
+    info->intercept = shape->scale[0];
+    info->slope = shape->scale[1];
+    memcpy(info->value_unit, shape->value_unit, sizeof info->value_unit);
+    info->hounsfield = snow_has_suffix(shape->value_unit, "HU") ||
+                       strstr(shape->value_unit, "ounsfield");
+    for (int n = 0; n < SNOW_CHANNELS_MAX; n++) {
+        double *window = info->channel[n].window;
+        for (int end = 0; end < 2 && (window[0] != 0 || window[1] != 0); end++)
+            window[end] = info->intercept + info->slope * window[end];
+    }
+}
+
 static snow_status make_plan(tiff_set *set, tiff_plan *plan,
                              snow_volume_info *info) {
     tiff_reader *reader = &set->own;
@@ -233,6 +258,7 @@ static snow_status make_plan(tiff_set *set, tiff_plan *plan,
         snow_tiff_read_text(text, &plan->shape);
         SNOW_TRY(snow_tiff_read_shape(set->context, text, &plan->page,
                                       &plan->shape));
+        snow_tiff_read_tags(&reader->file, &plan->page, &plan->shape);
         SNOW_TRY(plan_pages(set, plan));
     }
     take_matrix(&reader->file, plan, info);
@@ -243,7 +269,9 @@ static snow_status make_plan(tiff_set *set, tiff_plan *plan,
     info->dims[2] = plan->slices;
     info->type = plan->page.type;
     info->times = plan->times;
+    info->negative = plan->page.white && !plan->page.flip;
     describe_channels(plan, info);
+    take_calibration(plan, info);
     return SNOW_STATUS_OK;
 }
 
@@ -286,18 +314,36 @@ static void note_set(const tiff_set *set, const snow_volume_options *options,
                  set->ome.files);
 }
 
+static void note_values(snow_context *context, const tiff_plan *plan) {
+    if (plan->page.flip)
+        snow_notify(context, "its 0 is white (MinIsWhite): values are inverted "
+                             "to be bright where it is");
+    else if (plan->page.white)
+        snow_notify(context, "its 0 is white (MinIsWhite): values are kept, "
+                             "and high ones are dark in slices");
+    if (!isnan(plan->shape.nodata))
+        snow_notify(context,
+                    "voxels of %.9g have no value, by its tag GDAL_NODATA",
+                    plan->shape.nodata);
+    if (plan->shape.bent)
+        snow_notify(context, "its values have a calibration of ImageJ that is "
+                             "no straight line; they are as stored");
+}
+
 /* --- voxels --------------------------------------------------------------- */
 
-/* Puts NaN where slices are missing, for which the type was chosen. */
-static snow_status leave_gaps(snow_volume **volume, const bool *missing) {
+/* Puts NaN where slices or values are missing, for which the type changes. */
+static snow_status leave_gaps(snow_volume **volume, double nodata,
+                              const bool *missing) {
     snow_volume *old = *volume, *made;
     snow_volume_info info = old->info;
     const int64_t slice = info.dims[0] * info.dims[1];
     snow_mask_info(&info);
     SNOW_TRY(snow_volume_new(old->context, &info, &made));
     for (int64_t i = 0; i < slice * info.dims[2]; i++) {
-        const double value =
-            missing[i / slice] ? (double)NAN : snow_volume_native(old, i);
+        double value = snow_volume_native(old, i);
+        if (missing[i / slice] || value == nodata)
+            value = NAN;
         if (info.type == SNOW_TYPE_FLOAT32)
             ((float *)made->owned)[i] = (float)value;
         else
@@ -324,7 +370,7 @@ static snow_status read_box(tiff_set *set, const tiff_plan *plan, bool gaps,
         status = snow_tiff_read_planes(set, plan, first, channel % samples,
                                        region, volume, missing);
     if (status == SNOW_STATUS_OK && gaps)
-        status = leave_gaps(&volume, missing);
+        status = leave_gaps(&volume, plan->shape.nodata, missing);
     snow_release(set->context, missing);
     if (status != SNOW_STATUS_OK)
         snow_volume_close(volume);
@@ -348,7 +394,9 @@ static snow_status read_open(tiff_set *set, tiff_plan *plan,
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
     SNOW_TRY(snow_tiff_check_planes(
         set, plan, options, channel / plan->page.samples, info->time, &gaps));
+    gaps |= !isnan(plan->shape.nodata);
     note_set(set, options, info);
+    note_values(context, plan);
     SNOW_TRY(snow_region_lay_out(context, options, info, &region));
     if (out)
         SNOW_TRY(read_box(set, plan, gaps, channel, &region, info, out));

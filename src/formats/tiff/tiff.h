@@ -6,6 +6,7 @@
  *   ome.c    OME-XML -> tiff_shape, and which page has which plane
  *   set.c    the files that OME-XML names
  *   planes.c   planes that are there or missing -> the volume's voxels
+ *   makers.c   private tags of other programs
  *   channels.c   what it says of channels
  *   page.c   a page -> voxels of a slice, by libtiff */
 #ifndef SNOW_FORMATS_TIFF_TIFF_H
@@ -17,11 +18,16 @@
 /* What a description says about all pages together; 0 and "" if nothing. */
 typedef struct tiff_shape {
     bool imagej;    /* written by ImageJ */
+    bool metamorph; /* ... by MetaMorph: planes lie behind the first page */
     int64_t images; /* ... which may exceed the number of pages */
     int64_t channels, slices, frames;
     char order[6];     /* the order of C, Z and T, "XYCZT" */
     double spacing[3]; /* ImageJ stores x and y elsewhere */
     char unit[16];
+    double scale[2]; /* ImageJ: value = [0] + [1] * stored */
+    bool bent;       /* ... or another function, which is not read */
+    char value_unit[32];
+    double nodata; /* the value of missing voxels; NaN: none */
     snow_channel channel[SNOW_CHANNELS_MAX];
     bool colors, opacity; /* of samples of a pixel: they are; the last is */
 } tiff_shape;
@@ -80,9 +86,9 @@ void snow_tiff_free_ome(snow_context *context, tiff_ome *ome);
 /* How a value is stored; an unsupported type becomes a larger one. */
 typedef enum tiff_coding {
     TIFF_PLAIN,
-    TIFF_BIT,   /* uint8 of 0 and 1 */
-    TIFF_HALF,  /* float32 */
-    TIFF_TRIPLE /* 24 bits; 32 */
+    TIFF_PACKED, /* of other bits than whole bytes: the next larger integer */
+    TIFF_HALF,   /* float32 */
+    TIFF_TRIPLE  /* 24 bits; 32 */
 } tiff_coding;
 
 /* What all pages of a volume must have in common. */
@@ -91,7 +97,10 @@ typedef struct tiff_page {
     snow_type type;
     tiff_coding coding;
     uint16_t bits, compression;
+    bool is_signed;
     bool separate; /* samples are in planes, not interleaved */
+    bool white;    /* 0 is white: */
+    uint64_t flip; /* bits that are inverted therefore; 0: none */
 } tiff_page;
 
 /* An open file and the places of its pages. */
@@ -182,6 +191,10 @@ snow_status snow_tiff_describe(snow_tiff *file, tiff_page *out);
  * one of such pages.  Errors: SNOW_STATUS_BAD_INPUT (axes in no such order). */
 snow_status snow_tiff_read_shape(snow_context *context, const char *text,
                                  const tiff_page *page, tiff_shape *out);
+
+/* Adds what private tags of the current page say. */
+void snow_tiff_read_tags(const snow_tiff *file, const tiff_page *page,
+                         tiff_shape *shape);
 
 /* Adds what the current page says of channels beside its description. */
 void snow_tiff_read_channels(const snow_tiff *file, const tiff_page *page,

@@ -1,0 +1,90 @@
+/* formats/tiff/makers.c - private tags: the missing value of GDAL, planes of
+ * MetaMorph's .stk, axes of Zeiss's .lsm. */
+#include "formats/array.h"
+#include "formats/tiff/tiff.h"
+
+#include <math.h>
+#include <string.h>
+
+#if SNOW_HAVE_TIFF && !SNOW_LOADS
+
+#define TAG_UIC2 33629 /* MetaMorph: a value for each plane */
+#define TAG_LSM 34412  /* Zeiss: a record */
+#define TAG_NODATA 42113
+
+/* The values of a tag that libtiff does not know; 0: it is not there, or has
+ * others. */
+static uint32_t values_of(TIFF *tiff, uint32_t tag, TIFFDataType type,
+                          const void **out) {
+    const TIFFField *field = TIFFFindField(tiff, tag, TIFF_ANY);
+    uint32_t count = 0;
+    return field && TIFFFieldDataType(field) == type &&
+                   TIFFFieldPassCount(field) &&
+                   TIFFFieldReadCount(field) == TIFF_VARIABLE2 &&
+                   TIFFGetField(tiff, tag, &count, out)
+               ? count
+               : 0;
+}
+
+/* A value that the type does not have is in no voxel. */
+static void take_nodata(TIFF *tiff, const tiff_page *page, tiff_shape *shape) {
+    const void *values = NULL;
+    char text[64] = "";
+    const uint32_t count = values_of(tiff, TAG_NODATA, TIFF_ASCII, &values);
+    double value;
+    if (!count || !values || count > sizeof text)
+        return;
+    memcpy(text, values, count - 1);
+    text[strcspn(text, " ")] = 0;
+    const bool floats = page->type >= SNOW_TYPE_FLOAT32;
+    const double most = ldexp(1, page->bits - page->is_signed);
+    if (!snow_parse_double(text, &value) || !isfinite(value))
+        return;
+    if (page->type == SNOW_TYPE_FLOAT32)
+        value = (double)(float)value;
+    if (page->flip)
+        value = page->is_signed ? -1 - value : most - 1 - value;
+    if (floats || (value == floor(value) && value < most &&
+                   value >= (page->is_signed ? -most : 0)))
+        shape->nodata = value;
+}
+
+/* All planes lie behind the first. */
+static void take_stk(TIFF *tiff, tiff_shape *shape) {
+    const void *values = NULL;
+    const uint32_t planes = values_of(tiff, TAG_UIC2, TIFF_RATIONAL, &values);
+    if (planes < 2)
+        return;
+    shape->metamorph = true;
+    shape->slices = shape->images = planes;
+}
+
+/* Lengths are in metres.  Pages are slices, then times; channels are samples.
+ */
+static void take_lsm(TIFF *tiff, tiff_shape *shape) {
+    const void *values = NULL;
+    int32_t sizes[5];
+    double step[3];
+    if (values_of(tiff, TAG_LSM, TIFF_BYTE, &values) < 64 ||
+        snow_machine_big_endian())
+        return;
+    memcpy(sizes, (const char *)values + 8, sizeof sizes);
+    memcpy(step, (const char *)values + 40, sizeof step);
+    if (sizes[2] < 1 || sizes[4] < 1)
+        return;
+    shape->slices = sizes[2];
+    shape->frames = sizes[4];
+    memcpy(shape->order, "XYZTC", sizeof shape->order);
+    for (int i = 0; i < 3; i++)
+        shape->spacing[i] = step[i] > 0 && step[i] < 1 ? step[i] * 1e6 : 0;
+    memcpy(shape->unit, "um", 3);
+}
+
+void snow_tiff_read_tags(const snow_tiff *file, const tiff_page *page,
+                         tiff_shape *shape) {
+    take_nodata(file->tiff, page, shape);
+    take_stk(file->tiff, shape);
+    take_lsm(file->tiff, shape);
+}
+
+#endif
