@@ -107,6 +107,25 @@ def several_images():
     oracle.refuse("g.ome.tif", "no such image", ["--dataset", "2"], 2)
 
 
+def images_of_files():
+    """Each image in a file of its own, and one without pages."""
+    a, b = oracle.sample("u2", (2, 1, 1, 3, 4, 5), 4)
+    text = image(a.shape, plane(0, 0, 0, 0, 3, "k1.tif", 1)) + \
+        image(a.shape, "", name="none") + \
+        image(a.shape, plane(0, 0, 0, 0, 3, "k2.tif", 2), name="B")
+    oracle.put("k.companion.ome", ROOT % ("", text))
+    for i, c in ((1, a), (2, b)):
+        put(f"k{i}.tif", c[0, 0], ROOT % (f' UUID="urn:uuid:{i}"', '<BinaryOnly '
+            'MetadataFile="k.companion.ome" UUID="urn:uuid:9"/>'))
+        oracle.expect(f"k{i}.tif", c[0, 0], name=f"the image in file {i}")
+    oracle.says("the other image", "k2.tif", "image 2 is taken")
+    oracle.expect("k.companion.ome", a[0, 0])
+    oracle.expect("k1.tif", b[0, 0], options=["--dataset", "B"])
+    oracle.refuse("k.companion.ome", "none of the pages", ["--dataset", "none"])
+    os.rename("k2.tif", "k3.tif")
+    oracle.expect("k3.tif", a[0, 0], name="a file that was renamed")
+
+
 def write_set(a, names, companion=None):
     """A file for each (t, z): where XML is in the first, or in another file."""
     text = "".join(
@@ -189,6 +208,7 @@ def imagej():
 
 in_one_file()
 several_images()
+images_of_files()
 in_many_files()
 imagej()
 oracle.finish()

@@ -21,7 +21,9 @@
 typedef struct ome_text {
     snow_context *context;
     tiff_ome *out;
-    const char *wanted; /* a name or a number; NULL: the first */
+    const char *wanted; /* a name or a number; NULL: the first that has */
+    const char *own;    /* ... pages in this file; NULL: the first */
+    tiff_ome first;     /* the first, while others are looked at */
     int64_t number;     /* of the present image */
     bool chosen;        /* it is what is wanted: */
     bool pixels;        /* inside of its planes */
@@ -38,12 +40,10 @@ static int64_t whole(const char **attributes, const char *name,
                                                                 : otherwise;
 }
 
-/* Copies a text into the block; *at is its place. */
-static snow_status keep(ome_text *t, const char *text, size_t length,
-                        size_t *at) {
-    tiff_ome *ome = t->out;
+snow_status snow_tiff_keep(snow_context *context, tiff_ome *ome,
+                           const char *text, size_t length, size_t *at) {
     SNOW_TRY(
-        SNOW_RESERVE(t->context, ome->text, ome->used, ome->used + length + 1));
+        SNOW_RESERVE(context, ome->text, ome->used, ome->used + length + 1));
     *at = ome->used;
     memcpy(ome->text + *at, text, length);
     ome->text[*at + length] = 0;
@@ -84,6 +84,7 @@ static void take_pixels(ome_text *t, const char **attributes) {
         memcpy(shape->order, order, sizeof shape->order);
     take_spacing(attributes, shape);
     t->pixels = t->done = true;
+    t->out->taken = t->number - 1;
 }
 
 /* A colour is red, green, blue and alpha, the bytes of a number with a sign. */
@@ -127,12 +128,13 @@ static snow_status take_file(ome_text *t, const char **attributes) {
     tiff_member member = {.state = TIFF_UNKNOWN};
     if (!ome->run_count || ome->runs[ome->run_count - 1].file)
         return SNOW_STATUS_OK;
-    SNOW_TRY(keep(t, name ? name : "", name ? strlen(name) : 0, &member.name));
+    SNOW_TRY(snow_tiff_keep(t->context, ome, name ? name : "",
+                            name ? strlen(name) : 0, &member.name));
+    SNOW_TRY(snow_tiff_keep(t->context, ome, "", 0, &member.uuid));
     SNOW_TRY(SNOW_RESERVE(t->context, ome->members, ome->member_count,
                           ome->member_count + 1));
     ome->members[ome->member_count] = member;
     ome->runs[ome->run_count - 1].file = ome->member_count++;
-    SNOW_TRY(keep(t, "", 0, &ome->members[ome->member_count - 1].uuid));
     t->uuid = true;
     return SNOW_STATUS_OK;
 }
@@ -191,9 +193,48 @@ static snow_status begin(void *user, const char *name,
     return SNOW_STATUS_OK;
 }
 
+/* Forgets what was read of an image. */
+static snow_status begin_ome(ome_text *t) {
+    tiff_ome *ome = t->out;
+    tiff_member own = {.state = TIFF_UNKNOWN};
+    ome->samples = 1;
+    ome->runs = NULL;
+    ome->members = NULL;
+    ome->text = NULL;
+    ome->run_count = ome->member_count = ome->used = 0;
+    t->channels = 0;
+    snow_tiff_read_text(NULL, &ome->shape);
+    memcpy(ome->shape.order, "XYCZT", sizeof ome->shape.order);
+    SNOW_TRY(snow_tiff_keep(t->context, ome, "", 0, &own.name));
+    own.uuid = own.name;
+    SNOW_TRY(SNOW_RESERVE(t->context, ome->members, 0, 1));
+    ome->members[ome->member_count++] = own;
+    return SNOW_STATUS_OK;
+}
+
+/* Puts an image aside that has no pages in the own file. */
+static snow_status look_for_own(ome_text *t) {
+    tiff_ome *ome = t->out;
+    bool has = false;
+    for (size_t i = 0; i < ome->run_count && !has; i++) {
+        const size_t file = ome->runs[i].file;
+        has = !file || !strcmp(ome->text + ome->members[file].name, t->own);
+    }
+    if (has)
+        return SNOW_STATUS_OK;
+    t->done = false;
+    if (t->first.text)
+        snow_tiff_free_ome(t->context, ome);
+    else
+        t->first = *ome;
+    return begin_ome(t);
+}
+
 static snow_status end(void *user, const char *name) {
     ome_text *t = user;
     name = local(name);
+    if (!strcmp(name, "Image") && t->chosen && t->done && t->own && !t->wanted)
+        SNOW_TRY(look_for_own(t));
     t->uuid = t->uuid && strcmp(name, "UUID") != 0;
     t->pixels = t->pixels && strcmp(name, "Pixels") != 0;
     return SNOW_STATUS_OK;
@@ -210,7 +251,7 @@ static snow_status text(void *user, const char *at, size_t length) {
     if (!t->uuid || !length)
         return SNOW_STATUS_OK;
     t->out->used--;
-    return keep(t, at, length, &where);
+    return snow_tiff_keep(t->context, t->out, at, length, &where);
 }
 
 /* Files by their names, else by UUIDs. */
@@ -249,35 +290,46 @@ static snow_status join_members(ome_text *t) {
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_tiff_read_ome(snow_source *source, const char *wanted,
-                               tiff_ome *out) {
-    static const index_xml handlers = {begin, end, text};
-    ome_text t = {
-        .context = snow_source_context(source), .out = out, .wanted = wanted};
-    tiff_member own = {.state = TIFF_UNKNOWN};
-    *out = (tiff_ome){.samples = 1};
-    snow_tiff_read_text(NULL, &out->shape);
-    memcpy(out->shape.order, "XYCZT", sizeof out->shape.order);
-    SNOW_TRY(keep(&t, "", 0, &own.name));
-    own.uuid = own.name;
-    SNOW_TRY(SNOW_RESERVE(t.context, out->members, 0, 1));
-    out->members[out->member_count++] = own;
-    SNOW_TRY(snow_index_parse(source, &handlers, &t));
-    if (!t.done && *out->elsewhere)
+static snow_status finish_ome(ome_text *t) {
+    tiff_ome *ome = t->out;
+    if (!t->done && *ome->elsewhere)
         return SNOW_STATUS_OK;
-    if (!t.done && wanted && t.number)
-        return snow_fail(t.context, SNOW_STATUS_BAD_USAGE,
+    if (!t->done && t->wanted && t->number)
+        return snow_fail(t->context, SNOW_STATUS_BAD_USAGE,
                          "--dataset %.64s: there is no such image; it has "
                          "%lld: %s",
-                         wanted, (long long)t.number, out->list);
-    if (!t.done)
-        return snow_fail(t.context, SNOW_STATUS_BAD_INPUT,
+                         t->wanted, (long long)t->number, ome->list);
+    if (!t->done)
+        return snow_fail(t->context, SNOW_STATUS_BAD_INPUT,
                          "its OME-XML has no image with pixels");
-    if (!out->run_count) {
-        SNOW_TRY(SNOW_RESERVE(t.context, out->runs, 0, 1));
-        out->runs[out->run_count++] = (tiff_run){.count = 0};
+    if (!ome->run_count) {
+        SNOW_TRY(SNOW_RESERVE(t->context, ome->runs, 0, 1));
+        ome->runs[ome->run_count++] = (tiff_run){.count = 0};
     }
-    return join_members(&t);
+    return join_members(t);
+}
+
+snow_status snow_tiff_read_ome(snow_source *source, const char *wanted,
+                               const char *own, tiff_ome *out) {
+    static const index_xml handlers = {begin, end, text};
+    ome_text t = {.context = snow_source_context(source),
+                  .out = out,
+                  .own = own,
+                  .wanted = wanted};
+    *out = (tiff_ome){.images = 0};
+    snow_status status = begin_ome(&t);
+    if (status == SNOW_STATUS_OK)
+        status = snow_index_parse(source, &handlers, &t);
+    if (t.first.text && !t.done && status == SNOW_STATUS_OK) {
+        tiff_ome last = *out; /* which knows all images */
+        *out = t.first;
+        memcpy(out->list, last.list, sizeof out->list);
+        out->images = last.images;
+        t.done = true;
+        t.first = last;
+    }
+    snow_tiff_free_ome(t.context, &t.first);
+    return status == SNOW_STATUS_OK ? finish_ome(&t) : status;
 }
 
 void snow_tiff_free_ome(snow_context *context, tiff_ome *ome) {

@@ -45,12 +45,24 @@ static bool parse_type(uint16_t bits, uint16_t format, tiff_page *page) {
     return page->type != SNOW_TYPE_NONE;
 }
 
+/* A palette from white to black is a look, as ImageJ's of 8 bits. */
+static bool is_falling(TIFF *tiff, const tiff_page *page, uint16_t colors) {
+    uint16_t *map[3] = {NULL};
+    bool falls =
+        colors == PHOTOMETRIC_PALETTE && page->bits == 8 &&
+        TIFFGetField(tiff, TIFFTAG_COLORMAP, &map[0], &map[1], &map[2]);
+    for (int c = 0; c < 3 && falls; c++)
+        falls =
+            map[c][0] >= 0xff00 && !map[c][255] && map[c][128] == map[0][128];
+    return falls;
+}
+
 /* Inverted, v is 2^n - 1 - v of n bits, or -1 - v with a sign: all bits are
  * others.  Values of ImageJ and floats are kept. */
-static uint64_t flip_of(TIFF *tiff, const tiff_page *page) {
+static uint64_t flip_of(TIFF *tiff, const tiff_page *page, uint16_t colors) {
     char *text = NULL;
     TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text);
-    if (!page->white || page->type >= SNOW_TYPE_FLOAT32 ||
+    if (colors != PHOTOMETRIC_MINISWHITE || page->type >= SNOW_TYPE_FLOAT32 ||
         (text && !strncmp(text, "ImageJ=", 7)))
         return 0;
     return page->is_signed ? UINT64_MAX : UINT64_MAX >> (64 - page->bits);
@@ -98,8 +110,9 @@ snow_status snow_tiff_describe(snow_tiff *file, tiff_page *out) {
         return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
                          "its colours are stored as luminance and chrominance; "
                          "write it again as grey or RGB");
-    page.white = colors == PHOTOMETRIC_MINISWHITE;
-    page.flip = flip_of(tiff, &page);
+    page.white =
+        colors == PHOTOMETRIC_MINISWHITE || is_falling(tiff, &page, colors);
+    page.flip = flip_of(tiff, &page, colors);
     *out = page;
     return SNOW_STATUS_OK;
 }

@@ -12,12 +12,6 @@
 
 #if SNOW_HAVE_TIFF && !SNOW_LOADS
 
-/* A file of the folder. */
-struct listed {
-    char *name;
-    char uuid[64];
-};
-
 /* --- one file ------------------------------------------------------------- */
 
 snow_status snow_tiff_compare(snow_tiff *file, const tiff_page *page,
@@ -90,62 +84,41 @@ static void find_uuid(const char *text, char out[64]) {
 
 /* --- all files ------------------------------------------------------------ */
 
-/* Looks which files there are, and which UUIDs they have. */
-static snow_status list_folder(tiff_set *set, const snow_source *beside) {
+/* Gives a member the name of a file that has its UUID. */
+static snow_status name_members(tiff_set *set, const char *name,
+                                const char *uuid) {
+    tiff_ome *ome = &set->ome;
+    for (size_t i = 0; i < ome->member_count && *uuid; i++)
+        if (!strcmp(ome->text + ome->members[i].uuid, uuid))
+            SNOW_TRY(snow_tiff_keep(set->context, ome, name, strlen(name),
+                                    &ome->members[i].found));
+    return SNOW_STATUS_OK;
+}
+
+/* Looks which UUIDs the files of the folder have. */
+static snow_status scan_folder(tiff_set *set) {
     snow_folder folder = {.paths = NULL};
     char *pattern;
-    set->has_listed = true;
-    SNOW_TRY(snow_source_path_beside(beside, "*", &pattern));
+    set->scanned = true;
+    SNOW_TRY(snow_source_path_beside(set->own.source, "*", &pattern));
     snow_status status = snow_folder_list(set->context, pattern, &folder);
     snow_release(set->context, pattern);
     for (size_t i = 0; i < folder.count && status == SNOW_STATUS_OK; i++) {
+        const char *path = folder.paths[i];
         tiff_reader reader = {.source = NULL};
-        struct listed one = {.name = NULL};
-        const char *name = snow_path_name(folder.paths[i]);
-        if (!snow_format_has_name(&snow_format_tiff, name))
+        char uuid[64] = "";
+        if (!snow_format_has_name(&snow_format_tiff, path))
             continue;
-        if (snow_source_open(set->context, folder.paths[i], &reader.source) ==
+        if (snow_source_open(set->context, path, &reader.source) ==
                 SNOW_STATUS_OK &&
             open_reader(&reader, reader.source) == SNOW_STATUS_OK)
-            find_uuid(text_of(&reader), one.uuid);
+            find_uuid(text_of(&reader), uuid);
         close_reader(&reader);
-        if (!*one.uuid)
-            continue;
-        status = SNOW_RESERVE(set->context, set->listed, set->listed_count,
-                              set->listed_count + 1);
-        if (status == SNOW_STATUS_OK)
-            one.name = snow_allocate(set->context, strlen(name) + 1);
-        if (!one.name) {
-            status = SNOW_STATUS_NO_MEMORY;
-            continue;
-        }
-        memcpy(one.name, name, strlen(name) + 1);
-        set->listed[set->listed_count++] = one;
+        status = name_members(set, snow_path_name(path), uuid);
     }
     if (folder.paths)
         snow_folder_free(&folder);
     return status;
-}
-
-/* The file of the folder with a UUID; NULL if there is none. */
-static const char *file_of(const tiff_set *set, const char *uuid) {
-    for (size_t i = 0; i < set->listed_count; i++)
-        if (!strcmp(set->listed[i].uuid, uuid))
-            return set->listed[i].name;
-    return NULL;
-}
-
-/* Replaces a member's name. */
-static snow_status rename_member(tiff_set *set, tiff_member *member,
-                                 const char *name) {
-    tiff_ome *ome = &set->ome;
-    const size_t size = strlen(name) + 1;
-    SNOW_TRY(
-        SNOW_RESERVE(set->context, ome->text, ome->used, ome->used + size));
-    member->name = ome->used;
-    memcpy(ome->text + ome->used, name, size);
-    ome->used += size;
-    return SNOW_STATUS_OK;
 }
 
 /* Whether it is beside the file that was opened, by the name in the XML, which
@@ -165,50 +138,38 @@ static snow_status find_by_name(tiff_set *set, const snow_source *beside,
     return SNOW_STATUS_OK;
 }
 
-static snow_status find_by_uuid(tiff_set *set, const snow_source *beside,
-                                tiff_member *member, bool *found) {
-    *found = false;
-    if (!set->has_listed)
-        SNOW_TRY(list_folder(set, beside));
-    const char *name = file_of(set, set->ome.text + member->uuid);
-    if (!name)
-        return SNOW_STATUS_OK;
-    *found = true;
-    set->renamed++;
-    return rename_member(set, member, name);
+static const char *own_name(const tiff_set *set) {
+    return snow_path_name(snow_source_name(set->own.source));
 }
 
 /* Returns whether a member is the file that is opened. */
-static bool is_own(const tiff_set *set, const snow_source *own,
-                   const tiff_member *member) {
+static bool is_own(const tiff_set *set, const tiff_member *member) {
     const char *name = set->ome.text + member->name;
     const char *uuid = set->ome.text + member->uuid;
-    if (!set->own.open)
-        return false;
-    return (*uuid && !strcmp(uuid, set->uuid)) ||
-           (*name && !strcmp(name, snow_path_name(snow_source_name(own))));
+    return set->own.open && ((*uuid && !strcmp(uuid, set->uuid)) ||
+                             (*name && !strcmp(name, own_name(set))));
 }
 
 snow_status snow_tiff_find_member(tiff_set *set, size_t n) {
     tiff_member *member = &set->ome.members[n];
-    const snow_source *beside = set->own.source;
-    bool found;
+    const snow_source *own = set->own.source;
+    bool found = false;
     if (member->state != TIFF_UNKNOWN)
         return SNOW_STATUS_OK;
     member->state = TIFF_OWN;
-    if (is_own(set, beside, member) ||
-        (!n && set->own.open && !*set->ome.elsewhere))
+    if (is_own(set, member) || (!n && set->own.open && !*set->ome.elsewhere))
         return SNOW_STATUS_OK;
     member->state = TIFF_ABSENT;
-    if (!n && !*set->ome.elsewhere) /* a companion has no pages */
-        return SNOW_STATUS_OK;
-    if (!snow_source_has_siblings(beside))
-        found = false;
-    else
-        SNOW_TRY(find_by_name(set, beside, member, &found));
+    if (snow_source_has_siblings(own))
+        SNOW_TRY(find_by_name(set, own, member, &found));
     if (!found && set->ome.text[member->uuid] &&
-        snow_source_has_siblings(beside))
-        SNOW_TRY(find_by_uuid(set, beside, member, &found));
+        snow_source_has_siblings(own)) {
+        if (!set->scanned)
+            SNOW_TRY(scan_folder(set));
+        found = member->found != 0;
+        member->name = found ? member->found : member->name;
+        set->renamed += found;
+    }
     if (found)
         member->state = TIFF_OTHER;
     /* A file that stands alone was renamed, or came without its name. */
@@ -268,7 +229,8 @@ static snow_status read_text(tiff_set *set, const char *text,
     snow_source *memory;
     SNOW_TRY(snow_source_open_memory(set->context, "OME-XML", text,
                                      strlen(text), &memory));
-    snow_status status = snow_tiff_read_ome(memory, wanted, &set->ome);
+    snow_status status =
+        snow_tiff_read_ome(memory, wanted, own_name(set), &set->ome);
     snow_source_close(memory);
     return status;
 }
@@ -307,7 +269,7 @@ static snow_status follow(tiff_set *set, const char *wanted) {
     tiff_reader reader = {.source = source};
     snow_status status = snow_source_peek(source, bytes, 4, &got);
     if (status == SNOW_STATUS_OK && !snow_tiff_probe(bytes, got)) {
-        status = snow_tiff_read_ome(source, wanted, &set->ome);
+        status = snow_tiff_read_ome(source, wanted, own_name(set), &set->ome);
     } else if (status == SNOW_STATUS_OK) {
         status = open_reader(&reader, source);
         const char *text = status == SNOW_STATUS_OK ? text_of(&reader) : NULL;
@@ -320,8 +282,10 @@ static snow_status follow(tiff_set *set, const char *wanted) {
             snow_fail(set->context, SNOW_STATUS_BAD_INPUT,
                       "%s, which should describe its planes, does not", name);
     memcpy(set->ome.elsewhere, name, sizeof name);
-    return status == SNOW_STATUS_OK ? rename_member(set, set->ome.members, name)
-                                    : status;
+    if (status == SNOW_STATUS_OK)
+        status = snow_tiff_keep(set->context, &set->ome, name, strlen(name),
+                                &set->ome.members->name);
+    return status;
 }
 
 /* XML that is damaged says nothing: the pages are slices in their order. */
@@ -353,7 +317,7 @@ snow_status snow_tiff_open_set(snow_source *source,
     SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &got));
     if (!snow_tiff_probe(bytes, got)) {
         set->is_ome = true;
-        return snow_tiff_read_ome(source, wanted, &set->ome);
+        return snow_tiff_read_ome(source, wanted, NULL, &set->ome);
     }
     SNOW_TRY(open_reader(&set->own, source));
     const char *text = text_of(&set->own);
@@ -372,9 +336,6 @@ void snow_tiff_close_set(tiff_set *set) {
     close_reader(&set->own);
     close_reader(&set->other);
     snow_tiff_free_ome(set->context, &set->ome);
-    for (size_t i = 0; i < set->listed_count; i++)
-        snow_release(set->context, set->listed[i].name);
-    snow_release(set->context, set->listed);
 }
 
 #endif

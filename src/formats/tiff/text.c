@@ -70,15 +70,18 @@ void snow_tiff_take_unit(const char *text, char unit[16]) {
 static void take_calibration(const char *text, tiff_shape *out) {
     char value[VALUE_BYTES];
     double line[2];
+    if (!line_value(text, "cf", value) || !strcmp(value, "20"))
+        return;
+    out->bent = strcmp(value, "0") != 0 || !line_value(text, "c0", value) ||
+                !snow_parse_double(value, &line[0]) ||
+                !line_value(text, "c1", value) ||
+                !snow_parse_double(value, &line[1]) || !isfinite(line[0]) ||
+                !isfinite(line[1]) || line[1] == 0;
+    if (out->bent)
+        return;
+    memcpy(out->scale, line, sizeof line);
     if (line_value(text, "vunit", value) && strcmp(value, "Gray Value") != 0)
         snow_copy_name(value, out->value_unit, sizeof out->value_unit);
-    out->bent = line_value(text, "cf", value) && strcmp(value, "0") != 0 &&
-                strcmp(value, "20") != 0;
-    if (line_value(text, "cf", value) && !strcmp(value, "0") &&
-        line_value(text, "c0", value) && snow_parse_double(value, &line[0]) &&
-        line_value(text, "c1", value) && snow_parse_double(value, &line[1]) &&
-        isfinite(line[0]) && isfinite(line[1]) && line[1] != 0)
-        memcpy(out->scale, line, sizeof line);
 }
 
 static void read_imagej(const char *text, tiff_shape *out) {

@@ -296,9 +296,10 @@ static void note_set(const tiff_set *set, const snow_volume_options *options,
                      snow_volume_info *info) {
     if (set->ome.images > 1 && !options->dataset && !options->series)
         snow_notify(set->context,
-                    "has %lld images: %s; the first is taken, --dataset "
+                    "has %lld images: %s; image %lld is taken, --dataset "
                     "selects another by its number or name",
-                    (long long)set->ome.images, set->ome.list);
+                    (long long)set->ome.images, set->ome.list,
+                    (long long)set->ome.taken);
     if (set->renamed)
         snow_notify(set->context,
                     "%lld of its files have other names than it says, and "

@@ -53,7 +53,8 @@ typedef struct tiff_run {
 typedef struct tiff_member {
     size_t name, uuid;
     const char *key;
-    size_t same; /* the first member that is this file */
+    size_t same;  /* the first member that is this file */
+    size_t found; /* the name of a file with its UUID; 0: none is known */
     enum { TIFF_UNKNOWN, TIFF_OWN, TIFF_OTHER, TIFF_ABSENT } state;
     int64_t pages, used; /* of a file that was opened; pages that are wanted */
     uint64_t bytes;      /* ... its size */
@@ -64,6 +65,7 @@ typedef struct tiff_ome {
     tiff_shape shape;
     int64_t samples;     /* values of a pixel that are channels of their own */
     int64_t images;      /* in the XML; */
+    int64_t taken;       /* ... the one that is read, from 0 */
     char list[512];      /* ... their numbers and names, cut */
     char uuid[64];       /* of the file that the XML is in, "": none */
     char elsewhere[256]; /* the file with the XML, if it is not this one */
@@ -74,11 +76,16 @@ typedef struct tiff_ome {
     size_t used;
 } tiff_ome;
 
-/* Reads XML: of several images that of a name, a number or an ID, or the first
- * for NULL.  The caller frees it whatever the status.  Errors:
- * SNOW_STATUS_BAD_INPUT (damaged), SNOW_STATUS_BAD_USAGE (no such image). */
+/* Reads XML: of several images that of a name, a number or an ID, for NULL the
+ * first that has pages in the file `own`, else the first.  The caller frees it
+ * whatever the status.  Errors: SNOW_STATUS_BAD_INPUT (damaged),
+ * SNOW_STATUS_BAD_USAGE (no such image). */
 snow_status snow_tiff_read_ome(snow_source *source, const char *wanted,
-                               tiff_ome *out);
+                               const char *own, tiff_ome *out);
+
+/* Copies a text into the block; *at is its place. */
+snow_status snow_tiff_keep(snow_context *context, tiff_ome *ome,
+                           const char *text, size_t length, size_t *at);
 void snow_tiff_free_ome(snow_context *context, tiff_ome *ome);
 
 #if SNOW_HAVE_TIFF
@@ -119,10 +126,8 @@ typedef struct tiff_set {
     size_t number; /* of `other` */
     bool is_ome;
     tiff_ome ome;
-    char uuid[64];         /* of the own file */
-    struct listed *listed; /* files of the folder with a UUID */
-    size_t listed_count;
-    bool has_listed;
+    char uuid[64];            /* of the own file */
+    bool scanned;             /* UUIDs of all files of the folder are known */
     int64_t renamed, strange; /* files of another name, of another UUID */
 } tiff_set;
 
