@@ -9,10 +9,6 @@
 /* Coordinates are often written as floats: steps may differ by this share. */
 #define EVEN 1e-3
 
-cf_values snow_cf_values_default(void) {
-    return (cf_values){.scale = 1};
-}
-
 /* Lengths get their usual names; degrees east and degrees north are one unit
  * here; others stay. */
 static void take_unit(const char *text, char unit[64]) {
@@ -63,12 +59,40 @@ snow_axis_hint snow_cf_hint(const cf_words *words) {
     return hint;
 }
 
-void snow_cf_measure(double *coordinates, int64_t count, const char *units,
-                     cf_axis *out) {
+/* Longitudes may go on from 355 with 0, or from 180 with -175: once. */
+static void unwrap(double *coordinates, int64_t count, const char *units) {
+    int64_t at = 0, jumps = 0;
+    for (int64_t i = 1; i < count && !strncmp(units, "degree", 6); i++)
+        if (fabs(coordinates[i] - coordinates[i - 1]) > 180) {
+            at = i;
+            jumps++;
+        }
+    if (jumps != 1 || count < 3)
+        return;
+    const double turn = coordinates[at] < coordinates[at - 1] ? 360 : -360;
+    for (int64_t i = at; i < count; i++)
+        coordinates[i] += turn;
+}
+
+/* Coordinates grow downward (section 4.3) by their attribute positive, or where
+ * that is "", by a unit of pressure. */
+static bool is_down(const cf_attributes *says) {
+    static const char *const pressures[] = {
+        "Pa",       "hPa",       "kPa",     "bar",  "mbar", "mb",
+        "millibar", "millibars", "decibar", "dbar", "atm",  NULL};
+    return *says->positive ? is_same(says->positive, "down")
+                           : is_any_of(says->units, pressures);
+}
+
+void snow_cf_measure(double *coordinates, int64_t count,
+                     const cf_attributes *says, cf_axis *out) {
     *out = (cf_axis){.even = true, .coordinates = coordinates};
+    unwrap(coordinates, count, says->units);
     double first = coordinates[0], last = coordinates[count - 1];
     double step = count > 1 ? (last - first) / (double)(count - 1) : 0;
-    take_unit(units, out->unit);
+    take_unit(says->units, out->unit);
+    memcpy(out->calendar, says->calendar, sizeof out->calendar);
+    out->down = is_down(says);
     if (!isfinite(first) || !isfinite(step) || step == 0)
         return;
     out->given = true;
@@ -80,13 +104,6 @@ void snow_cf_measure(double *coordinates, int64_t count, const char *units,
             out->even = false;
     }
     out->uneven = !out->even && snow_uneven_fits(coordinates, count);
-}
-
-bool snow_cf_is_down(const char *positive, const char *units) {
-    static const char *const pressures[] = {
-        "Pa",       "hPa",       "kPa",     "bar",  "mbar", "mb",
-        "millibar", "millibars", "decibar", "dbar", "atm",  NULL};
-    return *positive ? is_same(positive, "down") : is_any_of(units, pressures);
 }
 
 void snow_cf_release(snow_context *context, cf_axis *axes, int count) {
@@ -162,83 +179,15 @@ void snow_cf_time(const cf_axis *axis, snow_volume_info *info) {
     memcpy(info->calendar, axis->calendar, sizeof info->calendar);
 }
 
-void snow_cf_name(const char *name, const char *units, const char *long_name,
-                  const char *standard_name, snow_volume_info *info) {
-    snprintf(info->quantity, sizeof info->quantity, "%s", name);
-    snprintf(info->value_unit, sizeof info->value_unit, "%s", units);
-    snprintf(info->description, sizeof info->description, "%s",
-             *long_name ? long_name : standard_name);
+/* Copies a text to a room, of which a longer one fills all. */
+static void keep(const char *text, char *to, size_t capacity) {
+    snprintf(to, capacity, "%.*s", (int)capacity - 1, text);
 }
 
-static snow_type float_type(snow_type type) {
-    switch (type) {
-    case SNOW_TYPE_INT8:
-    case SNOW_TYPE_UINT8:
-    case SNOW_TYPE_INT16:
-    case SNOW_TYPE_UINT16:
-        return SNOW_TYPE_FLOAT32;
-    case SNOW_TYPE_INT32:
-    case SNOW_TYPE_UINT32:
-        return SNOW_TYPE_FLOAT64;
-    default:
-        return type;
-    }
-}
-
-void snow_cf_apply(const cf_values *values, snow_volume_info *info) {
-    if (values->fills)
-        info->type = float_type(info->type);
-    info->slope = values->scale;
-    info->intercept = values->offset;
-}
-
-/* Floats are compared as they were rounded: a fill value of 1e20 differs from
- * its float. */
-static void blank(const cf_values *values, const snow_volume *from,
-                  snow_volume *to) {
-    const int64_t *dims = to->info.dims;
-    cf_values narrow = *values;
-    for (int i = 0; i < narrow.fills && from->info.type == SNOW_TYPE_FLOAT32;
-         i++)
-        narrow.fill[i] = (double)(float)narrow.fill[i];
-    for (int64_t i = 0; i < dims[0] * dims[1] * dims[2]; i++) {
-        double value = snow_volume_native(from, i);
-        bool fill = false;
-        for (int n = 0; n < narrow.fills && !fill; n++)
-            fill = value == narrow.fill[n];
-        if (fill)
-            value = NAN;
-        if (!fill && to == from)
-            continue;
-        if (to->info.type == SNOW_TYPE_FLOAT32)
-            ((float *)to->owned)[i] = (float)value;
-        else
-            ((double *)to->owned)[i] = value;
-    }
-}
-
-snow_status snow_cf_blank(const cf_values *values, snow_volume **volume) {
-    snow_volume *old = *volume, *made = old;
-    snow_volume_info info = old->info;
-    if (!values->fills)
-        return SNOW_STATUS_OK;
-    info.type = float_type(info.type);
-    if (info.type != SNOW_TYPE_FLOAT32 && info.type != SNOW_TYPE_FLOAT64) {
-        snow_notify(old->context, "missing values are kept as they are: no "
-                                  "type holds both NaN and 64-bit integers");
-        return SNOW_STATUS_OK;
-    }
-    if (info.type != old->info.type) {
-        snow_status status = snow_volume_new(old->context, &info, &made);
-        if (status != SNOW_STATUS_OK) {
-            snow_volume_close(old);
-            *volume = NULL;
-            return status;
-        }
-    }
-    blank(values, old, made);
-    if (made != old)
-        snow_volume_close(old);
-    *volume = made;
-    return SNOW_STATUS_OK;
+void snow_cf_name(const char *name, const cf_attributes *says,
+                  snow_volume_info *info) {
+    keep(name, info->quantity, sizeof info->quantity);
+    keep(says->units, info->value_unit, sizeof info->value_unit);
+    keep(*says->long_name ? says->long_name : says->standard_name,
+         info->description, sizeof info->description);
 }

@@ -1,6 +1,9 @@
 /* formats/cf.h - the Climate and Forecast conventions (cfconventions.org,
  * sections 2.5, 4 and 8), as far as they give the positions and values of
- * voxels; for NetCDF and HDF5. */
+ * voxels; for NetCDF, HDF5 and Zarr.
+ *
+ * A reader gives every attribute of a variable to snow_cf_take; what they mean
+ * is decided here alone, so that a data set is the same in all three. */
 #ifndef SNOW_FORMATS_CF_H
 #define SNOW_FORMATS_CF_H
 
@@ -21,15 +24,65 @@ typedef struct cf_axis {
     char unit[64], calendar[24];
 } cf_axis;
 
-/* The conversion of stored values to data: scale * stored + offset; a fill
- * value means a missing value. */
-typedef struct cf_values {
+/* A number; of integers also all of its 64 bits. */
+typedef struct cf_number {
+    double value;
+    uint64_t whole; /* two's complement */
+} cf_number;
+
+/* The most numbers of an attribute that are kept. */
+#define CF_MOST_NUMBERS 64
+
+/* An attribute as a file has it. */
+typedef struct cf_attribute {
+    char text[256]; /* UTF-8, cut; "" for numbers */
+    cf_number numbers[CF_MOST_NUMBERS];
+    int64_t count; /* of numbers, which may be more than are kept */
+} cf_attribute;
+
+/* What the attributes of a variable say. */
+typedef struct cf_attributes {
+    char units[64], long_name[65], standard_name[64], axis[16];
+    char calendar[24], positive[8];
+    int sign; /* _Unsigned: 1 is true, -1 false, 0 not given */
     double scale, offset;
-    double fill[2];
+    /* _FillValue, missing_value, valid_range, valid_min, valid_max */
+    cf_attribute limits[5];
+    bool any; /* some that make the conventions apply */
+} cf_attributes;
+
+/* The attributes that snow_cf_take heeds; NULL ends them. */
+extern const char *const snow_cf_names[];
+
+void snow_cf_attributes_begin(cf_attributes *out);
+void snow_cf_take(const char *name, const cf_attribute *given,
+                  cf_attributes *out);
+
+/* A number that is none of 64 bits. */
+cf_number snow_cf_number(double value);
+
+/* The conversion of stored values to data: scale * stored + offset, except for
+ * those that are missing. */
+typedef struct cf_values {
+    snow_type type; /* of stored values, by _Unsigned */
+    double scale, offset;
+    cf_number fill[CF_MOST_NUMBERS + 2];
     int fills;
+    cf_number least, most; /* valid values, if there are limits */
+    bool has_least, has_most;
+    bool rare; /* the only fill value is one that few integers have, and nobody
+                  gave it: they stay integers unless they have it */
 } cf_values;
 
-cf_values snow_cf_values_default(void);
+cf_values snow_cf_values_default(snow_type type);
+
+/* What the attributes mean for stored values of a type; `is_netcdf`: of a file
+ * whose library fills what is not written.  Notes what the type cannot hold. */
+cf_values snow_cf_settle(snow_context *context, const cf_attributes *from,
+                         snow_type type, bool is_netcdf);
+
+/* Turns stored values into data, missing ones into NaN. */
+void snow_cf_decode(const cf_values *values, int64_t count, double *numbers);
 
 /* What a dimension is by its name, and by attributes of its coordinates
  * (sections 4 and 4.4): time by axis "T", standard_name "time", units "...
@@ -42,13 +95,10 @@ typedef struct cf_words {
 snow_axis_hint snow_cf_hint(const cf_words *words);
 
 /* Measures an axis of `count` coordinates, which may fall; `given` stays false
- * if they are not finite or all equal.  Keeps their block. */
-void snow_cf_measure(double *coordinates, int64_t count, const char *units,
-                     cf_axis *out);
-
-/* Returns whether coordinates grow downward (section 4.3): by their attribute
- * positive, or where that is "", by a unit of pressure. */
-bool snow_cf_is_down(const char *positive, const char *units);
+ * if they are not finite or all equal.  Longitudes that wrap rise or fall
+ * throughout.  Keeps their block. */
+void snow_cf_measure(double *coordinates, int64_t count,
+                     const cf_attributes *says, cf_axis *out);
 
 /* Releases the coordinates of axes. */
 void snow_cf_release(snow_context *context, cf_axis *axes, int count);
@@ -56,10 +106,9 @@ void snow_cf_release(snow_context *context, cf_axis *axes, int count);
 /* Sets the time of the step that info names, from the axis of time. */
 void snow_cf_time(const cf_axis *axis, snow_volume_info *info);
 
-/* Sets what the values are: the name of a variable, and its attributes units,
- * long_name and standard_name, which may be "". */
-void snow_cf_name(const char *name, const char *units, const char *long_name,
-                  const char *standard_name, snow_volume_info *info);
+/* Sets what the values are: the name of a variable, and its attributes. */
+void snow_cf_name(const char *name, const cf_attributes *says,
+                  snow_volume_info *info);
 
 /* Sets spacing, origin and unit from the coordinates of x, y and z.  Axes in
  * another length than x are converted to x's unit; those in another unit (time,
@@ -71,12 +120,15 @@ void snow_cf_place(snow_context *context, const cf_axis axes[3],
                    const snow_volume_options *options, snow_volume_info *info,
                    snow_uneven *grid);
 
-/* Sets the type that holds a type's values and NaN (floats for integers of at
- * most 32 bits), slope and intercept. */
-void snow_cf_apply(const cf_values *values, snow_volume_info *info);
+/* Reads stored voxels of info->type, of a box of the options; where `out` is
+ * NULL only the sizes are checked. */
+typedef snow_uneven_fn cf_read_fn;
 
-/* Replaces voxels equal to a fill value by NaN; integers become the floats of
- * snow_cf_apply.  On failure the volume is closed. */
-snow_status snow_cf_blank(const cf_values *values, snow_volume **volume);
+/* Reads them as data: missing ones are NaN, for which integers become floats;
+ * sets type, slope and intercept. */
+snow_status snow_cf_read(snow_context *context, cf_values *values,
+                         cf_read_fn *read, void *user,
+                         const snow_volume_options *options,
+                         snow_volume_info *info, snow_volume **out);
 
 #endif

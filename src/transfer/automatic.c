@@ -320,7 +320,8 @@ static bool is_beyond_fractions(const snow_histogram *histogram) {
 }
 
 /* Returns whether values may be those of a computed field rather than of a
- * scan: numbers with fractions, in no patient and no format of microscopes. */
+ * scan: numbers with fractions, in no patient and no format of microscopes,
+ * unless it names their quantity, as data sets in Zarr do. */
 static bool is_field(const snow_histogram *histogram) {
     static const char *const images[] = {"mrc", "tiff", "zarr"};
     const snow_volume_info *info = &histogram->volume->info;
@@ -328,7 +329,8 @@ static bool is_field(const snow_histogram *histogram) {
                  !info->whole && !info->eight_bits && !info->medical &&
                  !*info->modality;
     for (size_t n = 0; n < sizeof images / sizeof *images; n++)
-        found = found && strcmp(info->format, images[n]) != 0;
+        found =
+            found && (*info->quantity || strcmp(info->format, images[n]) != 0);
     return found;
 }
 

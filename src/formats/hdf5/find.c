@@ -54,8 +54,7 @@ static snow_type type_of(hid_t type) {
     }
 }
 
-/* Reads sizes and type; returns false if it is not a numeric array. */
-static bool describe_dataset(hid_t id, hdf5_set *out) {
+bool snow_hdf5_describe(hid_t id, hdf5_set *out) {
     hid_t type = H5Dget_type(id), space = H5Dget_space(id);
     int axes = space < 0 ? -1 : H5Sget_simple_extent_ndims(space);
     out->type = type < 0 ? SNOW_TYPE_NONE : type_of(type);
@@ -112,7 +111,7 @@ static herr_t look(hid_t file, const char *name, const H5O_info_t *info,
     hid_t id = H5Dopen2(file, name, H5P_DEFAULT);
     if (id < 0)
         return 0;
-    if (describe_dataset(id, &set) && is_wanted(s, &set))
+    if (snow_hdf5_describe(id, &set) && is_wanted(s, &set))
         note(s, name, &set);
     H5Dclose(id);
     return 0;
@@ -190,7 +189,7 @@ snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
                          "check the path",
                          asked);
     }
-    if (!describe_dataset(id, out)) {
+    if (!snow_hdf5_describe(id, out)) {
         H5Dclose(id);
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "%.200s is not a numeric array with one to five axes; "

@@ -8,8 +8,7 @@
  *                         and dataOrder
  *     HDF5 images         IMAGE_SUBCLASS and INTERLACE_MODE: colours
  *     DIMENSION_LABELS    what the axes are: "component", "time", "x"
- *     NetCDF-4            coordinates by dimension scales, units; scale_factor,
- *                         add_offset and _FillValue of the values
+ *     NetCDF-4            coordinates by dimension scales, units
  *
  * Without any of them voxels are 1 x 1 x 1. */
 #include "formats/hdf5/hdf5.h"
@@ -145,47 +144,41 @@ typedef struct scales {
     snow_status status; /* the walk ends if memory does */
     snow_axis_hint hints[HDF5_MOST_AXES];
     cf_axis *axes;
+    bool is_netcdf; /* one of them is a dimension of NetCDF-4 */
 } scales;
 
 /* Reads the coordinates of a dimension scale, if it has one for each index. */
 static snow_status read_scale(const scales *s, hid_t scale, hsize_t count,
                               cf_axis *out) {
     snow_context *context = s->context;
-    char name[64], units[64], positive[64];
-    hsize_t sizes[HDF5_MOST_AXES], first[HDF5_MOST_AXES] = {0}, points = 1;
-    hid_t space = H5Dget_space(scale);
-    const int axes = H5Sget_simple_extent_ndims(space);
-    if (axes < 1 || axes > HDF5_MOST_AXES ||
-        H5Sget_simple_extent_dims(space, sizes, NULL) != axes)
+    char name[64];
+    cf_attributes says;
+    hdf5_set set;
+    hsize_t first[HDF5_MOST_AXES] = {0}, points = 1;
+    if (!snow_hdf5_describe(scale, &set))
         points = 0;
-    H5Sclose(space);
-    hid_t type = H5Dget_type(scale);
-    const H5T_class_t kind = H5Tget_class(type);
-    H5Tclose(type);
-    if (kind != H5T_INTEGER && kind != H5T_FLOAT)
-        points = 0;
-    for (int i = 0; i < axes && points; i++)
-        points *= sizes[i];
+    for (int i = 0; i < set.axes && points; i++)
+        points *= set.sizes[i];
     read_text(s->file, scale, "NAME", name, sizeof name);
-    read_text(s->file, scale, "units", units, sizeof units);
     if (!points || points != count || points > CF_MOST_COORDINATES ||
         !strncmp(name, "This is a netCDF dimension but not", 34))
         return SNOW_STATUS_OK;
     double *values = snow_allocate_array(context, count, sizeof *values);
     if (!values)
         return SNOW_STATUS_NO_MEMORY;
-    const snow_status status = snow_hdf5_read_box(
-        context, s->file, scale, H5T_NATIVE_DOUBLE, axes, first, sizes, values);
+    const snow_status status =
+        snow_hdf5_read_box(context, s->file, scale, H5T_NATIVE_DOUBLE, set.axes,
+                           first, set.sizes, values);
     if (status != SNOW_STATUS_OK) {
         snow_release(context, values);
         return snow_fail_within(context, status, "the coordinates of an axis");
     }
+    snow_hdf5_attributes(s->file, scale, &says);
+    const cf_values stored = snow_cf_settle(context, &says, set.type, false);
+    snow_cf_decode(&stored, (int64_t)points, values);
     snow_cf_release(context, out,
                     1); /* of a damaged file that lists it twice */
-    snow_cf_measure(values, (int64_t)points, units, out);
-    read_text(s->file, scale, "positive", positive, sizeof positive);
-    read_text(s->file, scale, "calendar", out->calendar, sizeof out->calendar);
-    out->down = snow_cf_is_down(positive, units);
+    snow_cf_measure(values, (int64_t)points, &says, out);
     return SNOW_STATUS_OK;
 }
 
@@ -197,15 +190,11 @@ typedef struct scale_use {
 
 /* What an axis is, by its scale's name in the file and its attributes. */
 static snow_axis_hint hint_of(const scales *s, hid_t scale, const char *path) {
-    char units[64], axis[64], standard_name[64];
     const char *slash = strrchr(path, '/');
-    const cf_words words = {slash ? slash + 1 : path, units, axis,
-                            standard_name};
-    read_text(s->file, scale, "units", units, sizeof units);
-    read_text(s->file, scale, "axis", axis, sizeof axis);
-    read_text(s->file, scale, "standard_name", standard_name,
-              sizeof standard_name);
-    return snow_cf_hint(&words);
+    cf_attributes says;
+    snow_hdf5_attributes(s->file, scale, &says);
+    return snow_cf_hint(&(cf_words){slash ? slash + 1 : path, says.units,
+                                    says.axis, says.standard_name});
 }
 
 /* The times of a dimension without coordinates (WRF) are those of any variable
@@ -237,6 +226,7 @@ static void use_scale(scales *s, hid_t scale, const char *path,
         if (uses[i].set != s->address || uses[i].axis < 0 || from_end < 0)
             continue;
         s->hints[from_end] = hint_of(s, scale, path);
+        s->is_netcdf |= H5Aexists(scale, "_Netcdf4Dimid") > 0;
         const hsize_t steps = s->set->sizes[uses[i].axis];
         cf_axis *axis = &s->axes[from_end];
         s->status = read_scale(s, scale, steps, axis);
@@ -340,6 +330,7 @@ snow_status snow_hdf5_read_axes(snow_context *context, const hdf5_file *file,
     int64_t sizes[HDF5_MOST_AXES];
     memset(out, 0, sizeof *out);
     SNOW_TRY(read_scales(&s));
+    out->is_netcdf = s.is_netcdf;
     read_axis_labels(&s);
     snow_hdf5_hint_image(file, set, s.hints);
     for (int i = 0; i < HDF5_MOST_AXES; i++)
@@ -375,28 +366,11 @@ static void place_by_scales(snow_context *context, const hdf5_axes *axes,
         snow_cf_place(context, space, options, info, grid);
 }
 
-static void read_values(const hdf5_set *set, cf_values *out) {
-    static const char *const fills[] = {"_FillValue", "missing_value"};
-    double value;
-    if (snow_hdf5_numbers(set->id, "scale_factor", 1, &value) == 1 &&
-        isfinite(value) && value != 0)
-        out->scale = value;
-    if (snow_hdf5_numbers(set->id, "add_offset", 1, &value) == 1 &&
-        isfinite(value))
-        out->offset = value;
-    for (int i = 0; i < 2; i++)
-        if (snow_hdf5_numbers(set->id, fills[i], 1, &value) == 1 &&
-            (!out->fills || value != out->fill[0]))
-            out->fill[out->fills++] = value;
-}
-
 void snow_hdf5_place(snow_context *context, const hdf5_file *file,
                      const hdf5_set *set, const hdf5_axes *axes,
                      const snow_volume_options *options, snow_volume_info *info,
-                     cf_values *values, snow_uneven *grid) {
+                     snow_uneven *grid) {
     char group[HDF5_NAME_BYTES];
-    *values = snow_cf_values_default();
-    read_values(set, values);
     if (place_by_size(set, info) || place_by_mesh(file, set->id, set, info) ||
         snow_hdf5_place_image(file, set, info))
         return;

@@ -115,7 +115,7 @@ static snow_status refuse_minc(snow_context *context, hid_t file) {
 
 /* The sizes, and the requested channel or component and time. */
 static snow_status pick(snow_context *context, const hdf5_set *set,
-                        const hdf5_axes *axes,
+                        const hdf5_axes *axes, const cf_values *values,
                         const snow_volume_options *options,
                         snow_volume_info *info, hsize_t start[HDF5_MOST_AXES]) {
     const snow_axes *roles = &axes->roles;
@@ -127,7 +127,7 @@ static snow_status pick(snow_context *context, const hdf5_set *set,
                              "%.200s is empty; choose another with --dataset",
                              set->path);
     }
-    info->type = set->type;
+    info->type = values->type;
     SNOW_TRY(
         snow_volume_pick_axes(context, options, roles, sizes, info, &channel));
     if (axes->colors && roles->interleaved && sizes[roles->channel] >= 3) {
@@ -204,8 +204,8 @@ static void note_chunks(const hdf5_job *job, const snow_region *region) {
         snow_region_in_blocks(job->context, region, size);
 }
 
-/* Reads a box of the file's own voxels as data, with missing ones. */
-static snow_status read_voxels(void *user, const snow_volume_options *options,
+/* Reads a box of the file's own voxels as they are stored. */
+static snow_status read_stored(void *user, const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
     hdf5_job *job = user;
     snow_context *context = job->context;
@@ -215,31 +215,40 @@ static snow_status read_voxels(void *user, const snow_volume_options *options,
     SNOW_TRY(check_size(context, job->file, &region));
     if (!snow_uneven_any(&job->grid))
         note_chunks(job, &region);
-    if (out) {
-        SNOW_TRY(snow_volume_new(context, info, &volume));
-        snow_status status = read_region(job->file, job->set, &job->axes.roles,
-                                         &region, job->start, volume);
-        if (status != SNOW_STATUS_OK) {
-            snow_volume_close(volume);
-            return status;
-        }
-        SNOW_TRY(snow_cf_blank(&job->values, &volume));
+    if (!out)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_volume_new(context, info, &volume));
+    snow_status status = read_region(job->file, job->set, &job->axes.roles,
+                                     &region, job->start, volume);
+    if (status == SNOW_STATUS_OK)
         *out = volume;
-    }
-    snow_cf_apply(&job->values, info);
-    return SNOW_STATUS_OK;
+    else
+        snow_volume_close(volume);
+    return status;
+}
+
+/* The same as data, with missing ones. */
+static snow_status read_voxels(void *user, const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    hdf5_job *job = user;
+    return snow_cf_read(job->context, &job->values, read_stored, job, options,
+                        info, out);
 }
 
 static snow_status read_job(hdf5_job *job, const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out) {
     const hdf5_file *file = job->file;
+    cf_attributes says;
     SNOW_TRY(snow_hdf5_read_axes(job->context, file, job->set, &job->axes));
-    SNOW_TRY(
-        pick(job->context, job->set, &job->axes, options, info, job->start));
+    snow_hdf5_attributes(file, job->set->id, &says);
+    job->values =
+        snow_hdf5_values(job->context, file, job->set, &job->axes, &says);
+    SNOW_TRY(pick(job->context, job->set, &job->axes, &job->values, options,
+                  info, job->start));
     snow_hdf5_place(job->context, file, job->set, &job->axes, options, info,
-                    &job->values, &job->grid);
-    SNOW_TRY(snow_hdf5_mean(job->context, file, job->set, &job->axes, info,
-                            &job->values));
+                    &job->grid);
+    SNOW_TRY(snow_hdf5_mean(job->context, file, job->set, &job->axes, &says,
+                            info, &job->values));
     return snow_uneven_any(&job->grid)
                ? snow_uneven_read(job->context, &job->grid, options,
                                   read_voxels, job, info, out)

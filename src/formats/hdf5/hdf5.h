@@ -4,8 +4,8 @@
  *   find.c    names -> the data set to read
  *   series.c  patterns of names -> the data set of a step
  *   text.c    texts of attributes
- *   grid.c    attributes -> geometry and value conversion
- *   meaning.c attributes -> quantity, unit, time
+ *   grid.c    attributes -> geometry
+ *   meaning.c attributes -> quantity, unit, time, conversion of values
  *   vtkhdf.c  VTK's own attributes -> geometry, time
  *   filters.c the stored bytes of a chunk -> its elements
  *   chunks.c  chunks, or what else is stored -> a box of elements
@@ -68,6 +68,10 @@ snow_status snow_hdf5_fail(snow_context *context, const char *what);
 snow_status snow_hdf5_visit(snow_context *context, hid_t file,
                             H5O_iterate_t look, void *user);
 
+/* Reads sizes and type of a data set; returns false if it is not a numeric
+ * array. */
+bool snow_hdf5_describe(hid_t id, hdf5_set *out);
+
 /* Opens the requested data set, or the only volume of the file.  The caller
  * closes the set's id.  Errors: SNOW_STATUS_BAD_INPUT, SNOW_STATUS_BAD_USAGE
  * (there are several; a wrong name). */
@@ -105,6 +109,7 @@ typedef struct hdf5_axes {
     cf_axis scales[HDF5_MOST_AXES]; /* coordinates by dimension scales */
     snow_axes roles;
     bool colors; /* the components are red, green, blue and perhaps opacity */
+    bool is_netcdf; /* some are dimensions of NetCDF-4 */
 } hdf5_axes;
 
 /* Finds the meaning of each axis; the caller releases the scales
@@ -113,12 +118,11 @@ typedef struct hdf5_axes {
 snow_status snow_hdf5_read_axes(snow_context *context, const hdf5_file *file,
                                 const hdf5_set *set, hdf5_axes *out);
 
-/* Sets matrix and unit of info, how values are stored, and the grid of uneven
- * axes. */
+/* Sets matrix and unit of info, and the grid of uneven axes. */
 void snow_hdf5_place(snow_context *context, const hdf5_file *file,
                      const hdf5_set *set, const hdf5_axes *axes,
                      const snow_volume_options *options, snow_volume_info *info,
-                     cf_values *values, snow_uneven *grid);
+                     snow_uneven *grid);
 
 /* Image data that VTK wrote: the first sets the matrix, and is false for other
  * data; then the time; then which axes are time and components, if it has
@@ -134,11 +138,25 @@ void snow_hdf5_hint_image(const hdf5_file *file, const hdf5_set *set,
  * it is missing or has other values. */
 int snow_hdf5_numbers(hid_t object, const char *name, int most, double *out);
 
+/* Reads an attribute; returns false if there is none. */
+bool snow_hdf5_attribute(const hdf5_file *file, hid_t object, const char *name,
+                         cf_attribute *out);
+
+/* Reads those that the conventions have. */
+void snow_hdf5_attributes(const hdf5_file *file, hid_t object,
+                          cf_attributes *out);
+
+/* How values are stored, if the conventions apply to the data set. */
+cf_values snow_hdf5_values(snow_context *context, const hdf5_file *file,
+                           const hdf5_set *set, const hdf5_axes *axes,
+                           const cf_attributes *says);
+
 /* Sets what the values are, and the time of the step; values that have a factor
  * to SI (openPMD) are scaled by it.  Errors: those of snow_hdf5_read_box. */
 snow_status snow_hdf5_mean(snow_context *context, const hdf5_file *file,
                            const hdf5_set *set, const hdf5_axes *axes,
-                           snow_volume_info *info, cf_values *values);
+                           const cf_attributes *says, snow_volume_info *info,
+                           cf_values *values);
 
 #endif
 #endif

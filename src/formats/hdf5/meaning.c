@@ -14,6 +14,89 @@
 #include <stdio.h>
 #include <string.h>
 
+/* The numbers of an attribute, integers exactly too. */
+static void read_numbers(hid_t attribute, hid_t type, cf_attribute *out) {
+    const bool whole = H5Tget_class(type) == H5T_INTEGER;
+    const bool plus = whole && H5Tget_sign(type) == H5T_SGN_NONE;
+    double values[CF_MOST_NUMBERS];
+    uint64_t bits[CF_MOST_NUMBERS];
+    if (out->count > CF_MOST_NUMBERS)
+        return;
+    if ((!whole && H5Tget_class(type) != H5T_FLOAT) ||
+        H5Aread(attribute, H5T_NATIVE_DOUBLE, values) < 0 ||
+        (whole &&
+         H5Aread(attribute, plus ? H5T_NATIVE_UINT64 : H5T_NATIVE_INT64, bits) <
+             0))
+        out->count = 0;
+    for (int64_t i = 0; i < out->count; i++)
+        out->numbers[i] =
+            whole ? (cf_number){values[i], bits[i]} : snow_cf_number(values[i]);
+}
+
+bool snow_hdf5_attribute(const hdf5_file *file, hid_t object, const char *name,
+                         cf_attribute *out) {
+    memset(out, 0, sizeof *out);
+    if (H5Aexists(object, name) <= 0)
+        return false;
+    if (snow_hdf5_text(file, object, name, 0, out->text, sizeof out->text))
+        return true;
+    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+    if (attribute < 0)
+        return false;
+    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    const hssize_t count = H5Sget_simple_extent_npoints(space);
+    out->count = count > 0 ? count : 0;
+    read_numbers(attribute, type, out);
+    H5Sclose(space);
+    H5Tclose(type);
+    H5Aclose(attribute);
+    return true;
+}
+
+void snow_hdf5_attributes(const hdf5_file *file, hid_t object,
+                          cf_attributes *out) {
+    cf_attribute given;
+    snow_cf_attributes_begin(out);
+    for (const char *const *name = snow_cf_names; *name; name++)
+        if (snow_hdf5_attribute(file, object, *name, &given))
+            snow_cf_take(*name, &given, out);
+}
+
+/* The library of NetCDF-4 leaves marks in a file. */
+static bool is_netcdf(const hdf5_file *file, const hdf5_set *set,
+                      const hdf5_axes *axes) {
+    bool found = axes->is_netcdf || H5Aexists(set->id, "_Netcdf4Dimid") > 0;
+    hid_t root = H5Oopen(snow_hdf5_id(file), "/", H5P_DEFAULT);
+    if (root >= 0) {
+        found |= H5Aexists(root, "_NCProperties") > 0;
+        H5Oclose(root);
+    }
+    return found;
+}
+
+/* Without a fill value of its own a variable is NC_NOFILL. */
+static bool is_filled(hid_t set) {
+    H5D_fill_value_t status = H5D_FILL_VALUE_UNDEFINED;
+    hid_t plan = H5Dget_create_plist(set);
+    if (plan >= 0) {
+        H5Pfill_value_defined(plan, &status);
+        H5Pclose(plan);
+    }
+    return status == H5D_FILL_VALUE_USER_DEFINED;
+}
+
+cf_values snow_hdf5_values(snow_context *context, const hdf5_file *file,
+                           const hdf5_set *set, const hdf5_axes *axes,
+                           const cf_attributes *says) {
+    const bool netcdf = is_netcdf(file, set, axes);
+    bool applies = netcdf || says->any;
+    for (int i = 0; i < HDF5_MOST_AXES; i++)
+        applies |= axes->scales[i].coordinates != NULL;
+    return applies ? snow_cf_settle(context, says, set->type,
+                                    netcdf && is_filled(set->id))
+                   : snow_cf_values_default(set->type);
+}
+
 /* Reads the first of some attributes that is there. */
 static void read_any(const hdf5_file *file, hid_t object,
                      const char *const *names, char *out, size_t capacity) {
@@ -97,16 +180,10 @@ static void take_time(const hdf5_file *file, const hdf5_set *set,
 
 snow_status snow_hdf5_mean(snow_context *context, const hdf5_file *file,
                            const hdf5_set *set, const hdf5_axes *axes,
-                           snow_volume_info *info, cf_values *values) {
-    static const char *const units[] = {"units", "unit", NULL};
-    static const char *const names[] = {"long_name", "description", NULL};
+                           const cf_attributes *says, snow_volume_info *info,
+                           cf_values *values) {
     const char *slash = strrchr(set->path, '/');
-    char unit[64], name[65], standard[64];
-    read_any(file, set->id, units, unit, sizeof unit);
-    read_any(file, set->id, names, name, sizeof name);
-    snow_hdf5_text(file, set->id, "standard_name", 0, standard,
-                   sizeof standard);
-    snow_cf_name(slash ? slash + 1 : set->path, unit, name, standard, info);
+    snow_cf_name(slash ? slash + 1 : set->path, says, info);
     if (axes->roles.time >= 0)
         snow_cf_time(&axes->scales[axes->roles.time], info);
     take_si(file, set, info, values);

@@ -4,7 +4,6 @@
  * file has room for so many. */
 #include "formats/netcdf/netcdf.h"
 
-#include <math.h>
 #include <string.h>
 
 /* Tags before the lists. */
@@ -122,88 +121,51 @@ static snow_type type_of(uint64_t type) {
     return type <= UINT64 ? types[type] : SNOW_TYPE_NONE;
 }
 
-/* The value at the cursor as a double; the position stays. */
-static double value_of(cursor *c, uint64_t type) {
-    uint64_t begin = c->at, bits = take_number(c, (int)type_bytes(type));
-    uint32_t low = (uint32_t)bits;
+/* Takes a number and passes it. */
+static cf_number take_value(cursor *c, uint64_t type) {
+    const uint64_t bits = take_number(c, (int)type_bytes(type));
+    const uint32_t low = (uint32_t)bits;
     float narrow;
     double wide;
-    c->at = begin;
     switch (type) {
     case BYTE:
-        return (int8_t)bits;
+        return snow_cf_number((int8_t)bits);
     case SHORT:
-        return (int16_t)bits;
+        return snow_cf_number((int16_t)bits);
     case INT:
-        return (int32_t)bits;
+        return snow_cf_number((int32_t)bits);
     case INT64:
-        return (double)(int64_t)bits;
+        return (cf_number){(double)(int64_t)bits, bits};
     case FLOAT:
         memcpy(&narrow, &low, sizeof narrow);
-        return (double)narrow;
+        return snow_cf_number((double)narrow);
     case DOUBLE:
         memcpy(&wide, &bits, sizeof wide);
-        return wide;
+        return snow_cf_number(wide);
     default:
-        return (double)bits;
+        return (cf_number){(double)bits, bits};
     }
 }
 
-/* Copies a text to a room, of which a longer one fills all. */
-static void keep_text(const char *from, char *to, size_t capacity) {
-    size_t length = strlen(from) < capacity ? strlen(from) : capacity - 1;
-    memcpy(to, from, length);
-    to[length] = 0;
-}
-
-/* Stores a text of a variable; the position stays. */
-static void keep_words(cursor *c, const char *name, int64_t count,
-                       netcdf_variable *v) {
-    char text[65] = "";
-    uint64_t begin = c->at;
-    copy_bytes(c, text, count < 64 ? (size_t)count : 64);
-    c->at = begin;
-    if (!strcmp(name, "units"))
-        keep_text(text, v->units, sizeof v->units);
-    if (!strcmp(name, "standard_name"))
-        keep_text(text, v->standard_name, sizeof v->standard_name);
-    if (!strcmp(name, "long_name"))
-        keep_text(text, v->long_name, sizeof v->long_name);
-    if (!strcmp(name, "description") && !*v->long_name)
-        keep_text(text, v->long_name, sizeof v->long_name);
-    if (!strcmp(name, "calendar"))
-        keep_text(text, v->calendar, sizeof v->calendar);
-    if (!strcmp(name, "positive"))
-        keep_text(text, v->positive, sizeof v->positive);
-    if (!strcmp(name, "axis"))
-        keep_text(text, v->axis_name, sizeof v->axis_name);
-    /* Version 1 has no unsigned bytes; they are marked this way. */
-    if (!strcmp(name, "_Unsigned") && !strcmp(text, "true"))
-        v->is_unsigned = true;
-}
-
-/* Stores an attribute of a variable. */
-static void keep_attribute(cursor *c, const char *name, uint64_t type,
-                           int64_t count, netcdf_variable *v) {
+/* Takes what is kept of an attribute; the position stays. */
+static void take_attribute(cursor *c, uint64_t type, int64_t count,
+                           cf_attribute *out) {
+    const uint64_t begin = c->at;
+    const int64_t room = (int64_t)sizeof out->text - 1;
+    memset(out, 0, sizeof *out);
     if (type == CHAR)
-        keep_words(c, name, count, v);
-    if (type == CHAR || count != 1)
-        return;
-    double value = value_of(c, type);
-    if (!strcmp(name, "scale_factor") && isfinite(value) && value != 0)
-        v->values.scale = value;
-    else if (!strcmp(name, "add_offset") && isfinite(value))
-        v->values.offset = value;
-    else if (!strcmp(name, "_FillValue") || !strcmp(name, "missing_value")) {
-        if (v->values.fills < 2)
-            v->values.fill[v->values.fills++] = value;
-    }
+        copy_bytes(c, out->text, (size_t)(count < room ? count : room));
+    else
+        out->count = count;
+    for (int64_t i = 0; i < out->count && i < CF_MOST_NUMBERS; i++)
+        out->numbers[i] = take_value(c, type);
+    c->at = begin;
 }
 
-/* Reads the attributes of a variable, or, for NULL, of the file. */
-static void take_attributes(cursor *c, netcdf_header *header,
-                            netcdf_variable *v) {
+/* Passes a list of attributes, which `take` may be given. */
+static void take_attributes(cursor *c, netcdf_take_fn *take, void *user) {
     char name[NETCDF_NAME_BYTES];
+    cf_attribute attribute;
     int64_t count = take_list(c, ATTRIBUTES, 12);
     for (int64_t i = 0; i < count && c->status == SNOW_STATUS_OK; i++) {
         take_name(c, name);
@@ -214,14 +176,24 @@ static void take_attributes(cursor *c, netcdf_header *header,
                         "its NetCDF header has an unknown type; it is damaged");
         if (c->status != SNOW_STATUS_OK)
             return;
-        if (v)
-            keep_attribute(c, name, type, values, v);
-        else if (!strcmp(name, "minc_version"))
-            header->minc = true;
+        if (take) {
+            take_attribute(c, type, values, &attribute);
+            take(user, name, &attribute);
+        }
         if (!snow_mul_u64((uint64_t)values, type_bytes(type), &bytes))
             bytes = UINT64_MAX - 8;
         skip(c, bytes);
     }
+}
+
+void snow_netcdf_attributes(const netcdf_header *header, snow_seekable *bytes,
+                            const netcdf_variable *v, netcdf_take_fn *take,
+                            void *user) {
+    cursor c = {.context = header->context,
+                .bytes = bytes,
+                .at = v->attributes,
+                .wide = header->version == 5 ? 8 : 4};
+    take_attributes(&c, take, user);
 }
 
 static void take_dimensions(cursor *c, netcdf_header *header) {
@@ -276,17 +248,12 @@ static void take_axes(cursor *c, const netcdf_header *header,
 static void take_variable(cursor *c, netcdf_header *header,
                           netcdf_variable *v) {
     memset(v, 0, sizeof *v);
-    v->values = snow_cf_values_default();
     take_name(c, v->name);
     take_axes(c, header, v);
-    take_attributes(c, header, v);
+    v->attributes = c->at;
+    take_attributes(c, NULL, NULL);
     uint64_t type = take_number(c, 4);
     v->type = type_of(type);
-    if (v->is_unsigned)
-        v->type = v->type == SNOW_TYPE_INT8    ? SNOW_TYPE_UINT8
-                  : v->type == SNOW_TYPE_INT16 ? SNOW_TYPE_UINT16
-                  : v->type == SNOW_TYPE_INT32 ? SNOW_TYPE_UINT32
-                                               : v->type;
     if (c->status == SNOW_STATUS_OK && !type_bytes(type))
         fail_header(c, "its NetCDF header has an unknown type; it is damaged");
     v->bytes *= type_bytes(type);
@@ -358,7 +325,7 @@ snow_status snow_netcdf_read_header(snow_context *context, snow_seekable *bytes,
         fail_header(&c, "its NetCDF header has a count below 0; it is damaged");
     out->records = streaming ? -1 : (int64_t)records;
     take_dimensions(&c, out);
-    take_attributes(&c, out, NULL);
+    take_attributes(&c, NULL, NULL);
     take_variables(&c, out);
     measure_records(&c, out);
     for (int64_t i = 0; i < out->dimension_count && c.status == SNOW_STATUS_OK;

@@ -119,24 +119,44 @@ static bool lay_out(const netcdf_header *header, const netcdf_variable *v,
     return snow_add_u64(bytes, v->begin, end) && *end <= (uint64_t)INT64_MAX;
 }
 
+static void take(void *user, const char *name, const cf_attribute *given) {
+    snow_cf_take(name, given, user);
+}
+
+static void read_attributes(const netcdf_header *header, snow_seekable *bytes,
+                            const netcdf_variable *v, cf_attributes *out) {
+    snow_cf_attributes_begin(out);
+    if (v)
+        snow_netcdf_attributes(header, bytes, v, take, out);
+}
+
 /* The coordinate variable of a dimension has its name and is its only axis; of
  * a dimension called time without one (WRF) any variable along it that has the
- * unit of a date.  NULL if there is none. */
+ * unit of a date.  NULL if there is none.  Gives its attributes. */
 static const netcdf_variable *coordinates_of(const netcdf_header *header,
-                                             int64_t dimension) {
+                                             snow_seekable *bytes,
+                                             int64_t dimension,
+                                             cf_attributes *says) {
     const char *name = header->dimensions[dimension].name;
     const bool is_time = snow_cf_hint(&(cf_words){name, "", "", ""}).time;
-    const netcdf_variable *date = NULL;
+    const netcdf_variable *found = NULL;
     for (int64_t i = 0; i < header->variable_count; i++) {
         const netcdf_variable *v = &header->variables[i];
         if (v->axes != 1 || v->axis[0] != dimension || !v->type)
             continue;
-        if (!strcmp(v->name, name))
-            return v;
-        if (is_time && !date && strstr(v->units, " since "))
-            date = v;
+        const bool own = !strcmp(v->name, name);
+        if (!own && !found && is_time) {
+            read_attributes(header, bytes, v, says);
+            if (strstr(says->units, " since "))
+                found = v;
+        }
+        if (own) {
+            found = v;
+            break;
+        }
     }
-    return date;
+    read_attributes(header, bytes, found, says);
+    return found;
 }
 
 /* Reads the variable's values as data into an array of that size; returns false
@@ -154,8 +174,6 @@ static bool read_coordinates(const netcdf_header *header,
     if (!snow_machine_big_endian())
         snow_swap_bytes(line->owned, count, size);
     snow_volume_stored(line, 0, count, out);
-    for (size_t i = 0; i < count; i++)
-        out[i] = out[i] * v->values.scale + v->values.offset;
     return true;
 }
 
@@ -163,7 +181,8 @@ static bool read_coordinates(const netcdf_header *header,
 static snow_status read_axis(const netcdf_header *header, snow_seekable *bytes,
                              int64_t dimension, cf_axis *out) {
     int64_t count = header->dimensions[dimension].size;
-    const netcdf_variable *v = coordinates_of(header, dimension);
+    cf_attributes says;
+    const netcdf_variable *v = coordinates_of(header, bytes, dimension, &says);
     if (!v || count < 1 || count > CF_MOST_COORDINATES ||
         (uint64_t)count > snow_seekable_size(bytes))
         return SNOW_STATUS_OK;
@@ -177,9 +196,10 @@ static snow_status read_axis(const netcdf_header *header, snow_seekable *bytes,
     bool read = values && read_coordinates(header, v, bytes, line, values);
     snow_volume_close(line);
     if (read) {
-        snow_cf_measure(values, count, v->units, out);
-        out->down = snow_cf_is_down(v->positive, v->units);
-        memcpy(out->calendar, v->calendar, sizeof out->calendar);
+        const cf_values stored =
+            snow_cf_settle(header->context, &says, v->type, true);
+        snow_cf_decode(&stored, count, values);
+        snow_cf_measure(values, count, &says, out);
     } else
         snow_release(header->context, values);
     return values ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
@@ -187,7 +207,7 @@ static snow_status read_axis(const netcdf_header *header, snow_seekable *bytes,
 
 /* The meaning of each axis. */
 static snow_status assign_axes(const netcdf_header *header,
-                               const netcdf_variable *v,
+                               snow_seekable *bytes, const netcdf_variable *v,
                                int64_t sizes[NETCDF_MOST_AXES],
                                snow_axes *out) {
     snow_axis_hint hints[NETCDF_MOST_AXES] = {{0}};
@@ -196,11 +216,11 @@ static snow_status assign_axes(const netcdf_header *header,
         if (i >= v->axes)
             continue;
         int64_t dimension = v->axis[v->axes - 1 - i];
-        const netcdf_variable *c = coordinates_of(header, dimension);
-        const cf_words words = {header->dimensions[dimension].name,
-                                c ? c->units : "", c ? c->axis_name : "",
-                                c ? c->standard_name : ""};
-        hints[i] = snow_cf_hint(&words);
+        cf_attributes says;
+        coordinates_of(header, bytes, dimension, &says);
+        hints[i] = snow_cf_hint(&(cf_words){header->dimensions[dimension].name,
+                                            says.units, says.axis,
+                                            says.standard_name});
     }
     if (snow_axes_assign((int)v->axes, sizes, hints, out))
         return SNOW_STATUS_OK;
@@ -217,8 +237,10 @@ typedef struct netcdf_job {
     const netcdf_header *header;
     const netcdf_variable *variable;
     cf_axis axes[4]; /* x, y, z, time */
+    cf_values values;
     snow_uneven grid;
     snow_array array;
+    bool done; /* the source is behind the voxels */
 } netcdf_job;
 
 /* Fills info, and finds where the voxels are. */
@@ -228,6 +250,7 @@ static snow_status describe_variable(netcdf_job *job,
     const netcdf_header *header = job->header;
     const netcdf_variable *v = job->variable;
     snow_array *array = &job->array;
+    cf_attributes says;
     uint64_t steps[NETCDF_MOST_AXES];
     int64_t sizes[NETCDF_MOST_AXES], channel;
     snow_axes roles;
@@ -236,18 +259,20 @@ static snow_status describe_variable(netcdf_job *job,
                          "%.100s is empty or too large for any file; choose "
                          "another with --dataset",
                          v->name);
-    SNOW_TRY(assign_axes(header, v, sizes, &roles));
+    SNOW_TRY(assign_axes(header, job->bytes, v, sizes, &roles));
     for (int i = 0; i < 4; i++) {
         int role = i < 3 ? roles.space[i] : roles.time;
         if (role >= 0)
             SNOW_TRY(read_axis(header, job->bytes, v->axis[v->axes - 1 - role],
                                &job->axes[i]));
     }
-    info->type = v->type;
+    read_attributes(header, job->bytes, v, &says);
+    job->values = snow_cf_settle(header->context, &says, v->type, true);
+    info->type = job->values.type;
     SNOW_TRY(snow_volume_pick_axes(header->context, options, &roles, sizes,
                                    info, &channel));
     snow_cf_time(&job->axes[3], info);
-    snow_cf_name(v->name, v->units, v->long_name, v->standard_name, info);
+    snow_cf_name(v->name, &says, info);
     array->first = v->begin;
     snow_array_place(&roles, steps, channel, info, array);
     array->big_endian = true;
@@ -257,21 +282,30 @@ static snow_status describe_variable(netcdf_job *job,
     return SNOW_STATUS_OK;
 }
 
-/* Reads from the source if it is still before the bytes, otherwise from the
- * part that was kept. */
-static snow_status read_array(const netcdf_job *job,
-                              const snow_volume_options *options,
+static size_t read_at(void *user, uint64_t at, void *bytes, size_t size) {
+    return snow_seekable_read(user, at, bytes, size);
+}
+
+/* Reads a box of stored voxels: from the source if that is still before them,
+ * otherwise from what was kept of it, or once more from its place. */
+static snow_status read_array(void *user, const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
+    netcdf_job *job = user;
     snow_source *source = job->source, *held = NULL;
-    if (snow_seekable_held(job->bytes)) {
-        SNOW_TRY(snow_source_open_memory(
-            snow_source_context(source), snow_source_name(source),
-            snow_seekable_held(job->bytes),
-            (size_t)snow_seekable_size(job->bytes), &held));
-        source = held;
-    }
+    const void *bytes = snow_seekable_held(job->bytes);
+    const snow_bytes_behind behind = {read_at, job->bytes,
+                                      snow_seekable_size(job->bytes)};
+    if (bytes)
+        SNOW_TRY(snow_source_open_memory(snow_source_context(source),
+                                         snow_source_name(source), bytes,
+                                         (size_t)behind.size, &held));
+    else if (job->done)
+        SNOW_TRY(snow_source_open_with(snow_source_context(source),
+                                       snow_source_name(source), &behind,
+                                       &held));
+    job->done |= out != NULL;
     snow_status status =
-        snow_array_read(source, options, &job->array, info, out);
+        snow_array_read(held ? held : source, options, &job->array, info, out);
     snow_source_close(held);
     return status;
 }
@@ -279,12 +313,9 @@ static snow_status read_array(const netcdf_job *job,
 /* Reads a box of the file's own voxels as data, with missing ones. */
 static snow_status read_voxels(void *user, const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
-    const netcdf_job *job = user;
-    SNOW_TRY(read_array(job, options, info, out));
-    if (out)
-        SNOW_TRY(snow_cf_blank(&job->variable->values, out));
-    snow_cf_apply(&job->variable->values, info);
-    return SNOW_STATUS_OK;
+    netcdf_job *job = user;
+    return snow_cf_read(job->header->context, &job->values, read_array, job,
+                        options, info, out);
 }
 
 static snow_status read_job(netcdf_job *job, const snow_volume_options *options,
@@ -302,10 +333,6 @@ static snow_status read_file(snow_source *source, snow_seekable *bytes,
                              snow_volume_info *info, snow_volume **out) {
     netcdf_job job = {.source = source, .bytes = bytes, .header = header};
     snow_volume *volume = NULL;
-    if (header->minc)
-        return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
-                         "is a MINC file, whose values are scaled slice by "
-                         "slice; convert it with mnc2nii");
     SNOW_TRY(find_variable(header, options->dataset, &job.variable));
     snow_status status = read_job(&job, options, info, out ? &volume : NULL);
     snow_cf_release(header->context, job.axes, 4);

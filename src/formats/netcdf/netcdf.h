@@ -34,10 +34,7 @@ typedef struct netcdf_variable {
     bool records;                   /* its first axis counts records */
     uint64_t bytes; /* of the variable, or of its part of a record */
     uint64_t begin;
-    char units[64], standard_name[64], axis_name[64], long_name[65];
-    char calendar[24], positive[8];
-    bool is_unsigned; /* set by an attribute, whatever the type */
-    cf_values values;
+    uint64_t attributes; /* where they begin */
 } netcdf_variable;
 
 typedef struct netcdf_header {
@@ -48,7 +45,6 @@ typedef struct netcdf_header {
     int64_t dimension_count, variable_count;
     netcdf_dimension *dimensions;
     netcdf_variable *variables;
-    bool minc;
 } netcdf_header;
 
 /* Reads the header; must be freed whatever the status.  Errors:
@@ -56,5 +52,12 @@ typedef struct netcdf_header {
 snow_status snow_netcdf_read_header(snow_context *context, snow_seekable *bytes,
                                     netcdf_header *out);
 void snow_netcdf_free_header(netcdf_header *header);
+
+/* Gives each attribute of a variable to `take`. */
+typedef void netcdf_take_fn(void *user, const char *name,
+                            const cf_attribute *attribute);
+void snow_netcdf_attributes(const netcdf_header *header, snow_seekable *bytes,
+                            const netcdf_variable *v, netcdf_take_fn *take,
+                            void *user);
 
 #endif

@@ -77,7 +77,9 @@ static snow_status measure_axis(snow_context *context, const vtk_grid *grid,
         return SNOW_STATUS_NO_MEMORY;
     for (int64_t i = 0; i < count; i++)
         own[i] = count < grid->points[axis] ? (at[i] + at[i + 1]) / 2 : at[i];
-    snow_cf_measure(own, count, "", out);
+    cf_attributes says;
+    snow_cf_attributes_begin(&says);
+    snow_cf_measure(own, count, &says, out);
     if (count == 1 || (out->given && (out->even || out->uneven)))
         return SNOW_STATUS_OK;
     return snow_fail(context, SNOW_STATUS_BAD_INPUT,

@@ -98,8 +98,7 @@ snow_status snow_zarr_add_coder(const zarr_store *store, const char *path,
 
 /* --- fill ----------------------------------------------------------------- */
 
-/* Numbers, and the special values that JSON lacks. */
-static bool fill_number(const json_t *given, double *out) {
+bool snow_zarr_number(const json_t *given, double *out) {
     static const struct {
         const char *name;
         double value;
@@ -176,7 +175,8 @@ static bool store_whole(const json_t *given, double value, snow_type type,
 snow_status snow_zarr_take_fill(const zarr_store *store, const json_t *given,
                                 zarr_array *array) {
     double value = 0;
-    bool right = fill_number(given, &value) || fill_bits(given, array, &value);
+    bool right =
+        snow_zarr_number(given, &value) || fill_bits(given, array, &value);
     float single = right ? (float)value : 0;
     if (right && array->type == SNOW_TYPE_FLOAT64)
         memcpy(array->fill, &value, sizeof value);
@@ -189,6 +189,11 @@ snow_status snow_zarr_take_fill(const zarr_store *store, const json_t *given,
             store, array->path,
             "has a fill_value that is not a valid %s; correct it",
             snow_type_name(array->type));
+    array->has_fill = given && !json_is_null(given);
+    array->fill_number =
+        json_is_integer(given)
+            ? (cf_number){value, (uint64_t)json_integer_value(given)}
+            : snow_cf_number(value);
     snow_text_print(array->fill_text, sizeof array->fill_text, "%g", value);
     return SNOW_STATUS_OK;
 }

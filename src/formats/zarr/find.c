@@ -118,6 +118,7 @@ static snow_status take_array(const zarr_store *store, const char *path,
     zarr_node node;
     SNOW_TRY(snow_zarr_look(store, path, &node));
     snow_status status = snow_zarr_describe(store, path, &node, &found->array);
+    found->attributes = json_incref(node.attributes);
     snow_zarr_forget(&node);
     return status;
 }
@@ -394,4 +395,5 @@ snow_status snow_zarr_find(const zarr_store *store, const char *path,
 
 void snow_zarr_found_forget(zarr_found *found) {
     snow_zarr_forget(&found->node);
+    json_decref(found->attributes);
 }

@@ -2,8 +2,9 @@
  * the positions of voxels.
  *
  * Axes of an image have names (OME-NGFF 0.3 and later) or are t, c, z, y, x.
- * Those of other arrays have the names from xarray or version 3, or are, from
- * the last one on, x, y, z, time, or x, y, z, channel, time. */
+ * Those of other arrays have the names from xarray or version 3, which may be
+ * those of coordinates, or are, from the last one on, x, y, z, time, or x, y,
+ * z, channel, time. */
 #include "formats/array.h"
 #include "formats/zarr/zarr.h"
 #include "volume/length_unit.h"
@@ -34,7 +35,7 @@ static int role_of_name(const char *name) {
 
 /* For names that are all known and unique. */
 static bool assign_names(const zarr_array *array, zarr_roles *out) {
-    zarr_roles roles = {{-1, -1, -1, -1, -1}};
+    zarr_roles roles = {{-1, -1, -1, -1, -1}, false};
     for (int i = 0; i < array->axes; i++) {
         int role = role_of_name(array->names[i]);
         if (role < 0 || roles.axis[role] >= 0)
@@ -50,9 +51,29 @@ static void assign_places(const zarr_array *array, zarr_roles *out) {
     static const int few[] = {ZARR_X, ZARR_Y, ZARR_Z, ZARR_TIME};
     static const int many[] = {ZARR_X, ZARR_Y, ZARR_Z, ZARR_CHANNEL, ZARR_TIME};
     int axes = array->axes;
-    *out = (zarr_roles){{-1, -1, -1, -1, -1}};
+    *out = (zarr_roles){{-1, -1, -1, -1, -1}, false};
     for (int i = 0; i < axes && i < (axes > 4 ? 5 : 4); i++)
         out->axis[axes > 4 ? many[i] : few[i]] = axes - 1 - i;
+}
+
+/* By the coordinates of a data set, as in NetCDF. */
+static bool assign_hints(const zarr_array *array, const zarr_cf *cf,
+                         zarr_roles *out) {
+    int64_t sizes[SNOW_MOST_AXES];
+    snow_axes axes;
+    const int last = array->axes - 1;
+    if (!cf->named || array->axes > SNOW_MOST_AXES)
+        return false;
+    for (int i = 0; i < SNOW_MOST_AXES; i++)
+        sizes[i] = i <= last ? array->sizes[last - i] : 1;
+    if (!snow_axes_assign(array->axes, sizes, cf->hints, &axes))
+        return false;
+    const int roles[] = {axes.space[0], axes.space[1], axes.space[2],
+                         axes.channel, axes.time};
+    for (int role = 0; role < ZARR_ROLES; role++)
+        out->axis[role] = roles[role] < 0 ? -1 : last - roles[role];
+    out->interleaved = axes.interleaved;
+    return true;
 }
 
 /* Before version 0.3 all axes exist. */
@@ -91,7 +112,7 @@ static snow_status assign_image(const zarr_store *store, zarr_found *found,
     zarr_array *array = &found->array;
     const json_t *axes = json_object_get(found->image, "axes");
     int role_of[ZARR_MOST_AXES];
-    *out = (zarr_roles){{-1, -1, -1, -1, -1}};
+    *out = (zarr_roles){{-1, -1, -1, -1, -1}, false};
     if (axes ? json_array_size(axes) != (size_t)array->axes : array->axes != 5)
         return snow_zarr_fail(
             store, array->path,
@@ -115,11 +136,11 @@ static snow_status assign_image(const zarr_store *store, zarr_found *found,
 }
 
 snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
-                             zarr_roles *out) {
+                             const zarr_cf *cf, zarr_roles *out) {
     zarr_array *array = &found->array;
     if (found->image)
         SNOW_TRY(assign_image(store, found, out));
-    else if (!assign_names(array, out))
+    else if (!assign_names(array, out) && !assign_hints(array, cf, out))
         assign_places(array, out);
     for (int i = 0; i < array->axes; i++) {
         bool used = false;

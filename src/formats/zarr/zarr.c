@@ -111,22 +111,19 @@ static snow_status open_store(snow_context *context, const char *path,
 
 /* --- a volume ------------------------------------------------------------- */
 
-/* Sizes by meaning, and the requested channel and time. */
+/* Sizes by meaning, and the requested channel or component and time. */
 static snow_status pick(snow_context *context,
                         const snow_volume_options *options, zarr_box *box,
                         snow_volume_info *info) {
     const zarr_array *array = box->array;
     const int *axis = box->roles.axis;
+    const snow_axes roles = {{axis[ZARR_X], axis[ZARR_Y], axis[ZARR_Z]},
+                             axis[ZARR_TIME],
+                             axis[ZARR_CHANNEL],
+                             box->roles.interleaved};
     int64_t channel;
-    for (int role = ZARR_X; role <= ZARR_Z; role++)
-        info->dims[role] = axis[role] < 0 ? 1 : array->sizes[axis[role]];
-    info->type = array->type;
-    info->times = axis[ZARR_TIME] < 0 ? 1 : array->sizes[axis[ZARR_TIME]];
-    SNOW_TRY(snow_volume_pick_channel(
-        context, options,
-        axis[ZARR_CHANNEL] < 0 ? 1 : array->sizes[axis[ZARR_CHANNEL]], info,
-        &channel));
-    SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
+    SNOW_TRY(snow_volume_pick_axes(context, options, &roles, array->sizes, info,
+                                   &channel));
     for (int i = 0; i < array->axes; i++) {
         int64_t at = i == axis[ZARR_CHANNEL] ? channel
                      : i == axis[ZARR_TIME]  ? info->time
@@ -186,44 +183,96 @@ static void spell(const zarr_found *found, char *out, size_t capacity) {
     snprintf(out, capacity, "%.*s", (int)capacity - 1, text);
 }
 
-static snow_status read_voxels(const zarr_box *box,
-                               const snow_volume_info *info,
-                               snow_volume **out) {
+/* An array on the way to be read. */
+typedef struct zarr_job {
+    zarr_box box;
+    zarr_cf cf;
+    snow_uneven grid;
+} zarr_job;
+
+/* Reads a box of the array's own voxels as they are stored. */
+static snow_status read_stored(void *user, const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    zarr_job *job = user;
+    snow_context *context = job->box.store->context;
+    snow_region region;
     snow_volume *volume;
-    SNOW_TRY(snow_volume_new(box->store->context, info, &volume));
-    snow_status status = snow_zarr_fill(box, volume->owned);
-    if (status != SNOW_STATUS_OK) {
+    int64_t voxels;
+    uint64_t bytes;
+    SNOW_TRY(snow_region_lay_out(context, options, info, &region));
+    crop(&region, &job->box);
+    if (!snow_uneven_any(&job->grid))
+        note_chunks(&job->box, &region);
+    if (!snow_volume_count(info->dims, info->type, &voxels, &bytes))
+        bytes = UINT64_MAX; /* refused by the check of the region before */
+    SNOW_TRY(snow_zarr_check_box(&job->box, bytes));
+    if (!out)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_volume_new(context, info, &volume));
+    snow_status status = snow_zarr_fill(&job->box, volume->owned);
+    if (status == SNOW_STATUS_OK)
+        *out = volume;
+    else
         snow_volume_close(volume);
-        return status;
-    }
-    *out = volume;
-    return SNOW_STATUS_OK;
+    return status;
+}
+
+/* The same as data, with missing ones. */
+static snow_status read_voxels(void *user, const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    zarr_job *job = user;
+    return snow_cf_read(job->box.store->context, &job->cf.values, read_stored,
+                        job, options, info, out);
+}
+
+/* What arrays of data sets have: coordinates, time, names. */
+static void describe_array(zarr_job *job, const snow_volume_options *options,
+                           snow_volume_info *info) {
+    const int *axis = job->box.roles.axis;
+    const char *path = job->box.array->path, *slash = strrchr(path, '/');
+    cf_axis space[3] = {{0}};
+    for (int i = 0; i < 3; i++)
+        if (axis[i] >= 0)
+            space[i] = job->cf.axes[axis[i]];
+    if (job->cf.named)
+        snow_cf_name(slash ? slash + 1 : path, &job->cf.says, info);
+    if (axis[ZARR_TIME] >= 0)
+        snow_cf_time(&job->cf.axes[axis[ZARR_TIME]], info);
+    if (space[0].given || space[1].given || space[2].given)
+        snow_cf_place(job->box.store->context, space, options, info,
+                      &job->grid);
+}
+
+static snow_status read_job(zarr_job *job, zarr_found *found,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out) {
+    const zarr_store *store = job->box.store;
+    zarr_box *box = &job->box;
+    SNOW_TRY(snow_zarr_read_cf(store, found, &job->cf));
+    SNOW_TRY(snow_zarr_assign(store, found, &job->cf, &box->roles));
+    const int axis = box->roles.axis[ZARR_CHANNEL];
+    info->type = job->cf.values.type;
+    if (!box->roles.interleaved)
+        snow_zarr_describe_channels(
+            found, axis < 0 ? 1 : found->array.sizes[axis], info);
+    SNOW_TRY(pick(store->context, options, box, info));
+    spell(found, info->storage, sizeof info->storage);
+    SNOW_TRY(snow_zarr_place(store, found, &box->roles, info));
+    describe_array(job, options, info);
+    return snow_uneven_any(&job->grid)
+               ? snow_uneven_read(store->context, &job->grid, options,
+                                  read_voxels, job, info, out)
+               : read_voxels(job, options, info, out);
 }
 
 static snow_status read_found(const zarr_store *store, zarr_found *found,
                               const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
-    zarr_box box = {.store = store, .array = &found->array};
-    snow_region region;
-    int64_t voxels;
-    uint64_t bytes;
+    zarr_job job = {.box = {.store = store, .array = &found->array}};
     *info = snow_volume_info_default("zarr");
-    SNOW_TRY(snow_zarr_assign(store, found, &box.roles));
-    const int axis = box.roles.axis[ZARR_CHANNEL];
-    snow_zarr_describe_channels(found, axis < 0 ? 1 : found->array.sizes[axis],
-                                info);
-    SNOW_TRY(pick(store->context, options, &box, info));
-    SNOW_TRY(snow_zarr_place(store, found, &box.roles, info));
-    SNOW_TRY(snow_region_lay_out(store->context, options, info, &region));
-    crop(&region, &box);
-    note_chunks(&box, &region);
-    spell(found, info->storage, sizeof info->storage);
-    if (!snow_volume_count(info->dims, info->type, &voxels, &bytes))
-        bytes = UINT64_MAX; /* refused by the check of the region before */
-    SNOW_TRY(snow_zarr_check_box(&box, bytes));
-    if (!out)
-        return SNOW_STATUS_OK;
-    return read_voxels(&box, info, out);
+    snow_status status = read_job(&job, found, options, info, out);
+    snow_zarr_release_cf(store, &job.cf);
+    return status;
 }
 
 snow_status snow_zarr_read_store(const zarr_store *store, const char *path,

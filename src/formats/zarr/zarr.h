@@ -7,6 +7,8 @@
  *   codec.c   the codecs, as steps; fill values
  *   find.c    a path -> the array to read, perhaps a resolution level
  *   place.c   axes and transformations -> positions of voxels
+ *   cf.c      attributes and coordinates as xarray writes them -> the same, and
+ *             the conversion of values
  *   unpack.c  the bytes of a chunk -> its values
  *   blosc.c   the same by a library that is loaded when needed
  *   chunks.c  the chunks that a box touches -> the volume
@@ -20,6 +22,7 @@
 #define SNOW_FORMATS_ZARR_ZARR_H
 
 #include "formats/array.h"
+#include "formats/cf.h"
 #include "volume/region.h"
 
 #include <jansson.h>
@@ -116,6 +119,8 @@ typedef struct zarr_array {
     bool big_endian;
     unsigned char fill[8]; /* fill value, as voxels are stored in memory */
     char fill_text[32];
+    cf_number fill_number; /* if it is given */
+    bool has_fill;
     bool prefixed;  /* names of files begin with "c" */
     char separator; /* between their numbers */
     zarr_coding coding;
@@ -154,6 +159,10 @@ snow_status snow_zarr_add_coder(const zarr_store *store, const char *path,
                                 const char *name, const json_t *given,
                                 zarr_array *array, zarr_coding *coding);
 
+/* A number, or one of those that JSON lacks: "NaN", "Infinity", "-Infinity";
+ * false for others. null is 0. */
+bool snow_zarr_number(const json_t *given, double *out);
+
 /* The value of voxels that are not stored. */
 snow_status snow_zarr_take_fill(const zarr_store *store, const json_t *given,
                                 zarr_array *array);
@@ -166,6 +175,7 @@ typedef struct zarr_found {
     const json_t *image; /* an entry of "multiscales", or NULL */
     const json_t *level; /* an entry of its "datasets": a resolution level */
     int index, levels;   /* its index; how many there are */
+    json_t *attributes;  /* of the array; NULL if there are none */
     zarr_array array;
 } zarr_found;
 
@@ -184,15 +194,31 @@ const json_t *snow_zarr_image(const json_t *attributes, size_t index);
  * invalid. */
 const char *snow_zarr_level_path(const json_t *image, size_t index);
 
+/* What the Climate and Forecast conventions say of an array. */
+typedef struct zarr_cf {
+    cf_values values;
+    cf_axis axes[ZARR_MOST_AXES]; /* coordinates, in the order of the file */
+    snow_axis_hint hints[SNOW_MOST_AXES]; /* from the last axis on */
+    bool named;                           /* it is an array of a data set */
+    cf_attributes says;
+} zarr_cf;
+
+/* Reads attributes and coordinates.  `out` must be released in any case.
+ * Errors: SNOW_STATUS_BAD_INPUT (damaged coordinates). */
+snow_status snow_zarr_read_cf(const zarr_store *store, const zarr_found *found,
+                              zarr_cf *out);
+void snow_zarr_release_cf(const zarr_store *store, zarr_cf *cf);
+
 /* The axis of the array that is x, y, z, channel and time; -1: none. */
 enum { ZARR_X, ZARR_Y, ZARR_Z, ZARR_CHANNEL, ZARR_TIME, ZARR_ROLES };
 typedef struct zarr_roles {
     int axis[ZARR_ROLES];
+    bool interleaved; /* channels are the components of a voxel */
 } zarr_roles;
 
 /* Assigns the roles of the array's axes, and completes their names. */
 snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
-                             zarr_roles *out);
+                             const zarr_cf *cf, zarr_roles *out);
 
 /* What "omero" says of the channels of an image, of which there are so many. */
 void snow_zarr_describe_channels(const zarr_found *found, int64_t count,

@@ -1,0 +1,409 @@
+/* formats/cf/values.c - the attributes of a variable, and which of its values
+ * are missing (cf.h).
+ *
+ * After CF 2.5.1 and 8.1, and appendix A of the NetCDF Users' Guide: a value is
+ * missing if it equals _FillValue or a number of missing_value, or lies outside
+ * of the valid ones.  All are compared as they are stored. */
+#include "formats/cf.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A step is searched for values that few have, up to this size; a larger one is
+ * taken to have them, whether its parts do or not. */
+#define SEARCHED_BYTES ((uint64_t)256 << 20)
+
+enum { FILL, MISSING, RANGE, LEAST, MOST, LIMITS };
+
+const char *const snow_cf_names[] = {
+    "_FillValue",  "missing_value", "valid_range",   "valid_min",
+    "valid_max",   "scale_factor",  "add_offset",    "_Unsigned",
+    "units",       "unit",          "standard_name", "long_name",
+    "description", "axis",          "calendar",      "positive",
+    NULL};
+
+/* --- what a file says ----------------------------------------------------- */
+
+void snow_cf_attributes_begin(cf_attributes *out) {
+    memset(out, 0, sizeof *out);
+    out->scale = 1;
+}
+
+cf_number snow_cf_number(double value) {
+    cf_number number = {value, 0};
+    if (value >= 0x1p64)
+        number.whole = UINT64_MAX;
+    else if (value >= 0)
+        number.whole = (uint64_t)value;
+    else if (value >= -0x1p63)
+        number.whole = (uint64_t)(int64_t)value;
+    return number;
+}
+
+/* Copies a text to a room, of which a longer one fills all. */
+static void keep(const char *text, char *to, size_t capacity) {
+    snprintf(to, capacity, "%.*s", (int)capacity - 1, text);
+}
+
+static void take_text(const char *name, const char *text, cf_attributes *out) {
+    const struct {
+        const char *name;
+        char *to;
+        size_t capacity;
+        bool second; /* only where there is no other */
+    } texts[] = {
+        {"units", out->units, sizeof out->units, false},
+        {"unit", out->units, sizeof out->units, true},
+        {"standard_name", out->standard_name, sizeof out->standard_name, false},
+        {"long_name", out->long_name, sizeof out->long_name, false},
+        {"description", out->long_name, sizeof out->long_name, true},
+        {"axis", out->axis, sizeof out->axis, false},
+        {"calendar", out->calendar, sizeof out->calendar, false},
+        {"positive", out->positive, sizeof out->positive, false},
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        if (!strcmp(name, texts[i].name) && !(texts[i].second && *texts[i].to))
+            keep(text, texts[i].to, texts[i].capacity);
+    if (!strcmp(name, "_Unsigned"))
+        out->sign = snow_same_name(text, "true")    ? 1
+                    : snow_same_name(text, "false") ? -1
+                                                    : 0;
+}
+
+void snow_cf_take(const char *name, const cf_attribute *given,
+                  cf_attributes *out) {
+    const double first = given->count ? given->numbers[0].value : NAN;
+    take_text(name, given->text, out);
+    for (int i = 0; i < LIMITS; i++)
+        if (!strcmp(name, snow_cf_names[i]))
+            out->limits[i] = *given;
+    if (!strcmp(name, "scale_factor") && given->count == 1 && isfinite(first) &&
+        first != 0)
+        out->scale = first;
+    if (!strcmp(name, "add_offset") && given->count == 1 && isfinite(first))
+        out->offset = first;
+    out->any |= !strcmp(name, "scale_factor") || !strcmp(name, "add_offset") ||
+                !strcmp(name, "_FillValue") || !strcmp(name, "missing_value") ||
+                !strcmp(name, "standard_name");
+}
+
+/* --- what it means -------------------------------------------------------- */
+
+cf_values snow_cf_values_default(snow_type type) {
+    return (cf_values){.type = type, .scale = 1};
+}
+
+static bool is_integer(snow_type type) {
+    return type < SNOW_TYPE_FLOAT32;
+}
+
+static bool is_signed(snow_type type) {
+    return type == SNOW_TYPE_INT8 || type == SNOW_TYPE_INT16 ||
+           type == SNOW_TYPE_INT32 || type == SNOW_TYPE_INT64;
+}
+
+/* Integers of NetCDF's old versions are signed, bytes of HDF4 unsigned. */
+static snow_type other_sign(snow_type type) {
+    static const snow_type pairs[][2] = {{SNOW_TYPE_INT8, SNOW_TYPE_UINT8},
+                                         {SNOW_TYPE_INT16, SNOW_TYPE_UINT16},
+                                         {SNOW_TYPE_INT32, SNOW_TYPE_UINT32},
+                                         {SNOW_TYPE_INT64, SNOW_TYPE_UINT64}};
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
+        for (int n = 0; n < 2; n++)
+            if (pairs[i][n] == type)
+                return pairs[i][!n];
+    return type;
+}
+
+/* Makes a number one of the type; false if that cannot hold it.  Of a type
+ * whose sign was changed it may be a number of the stored one: -1 is 255. */
+static bool fits(snow_type type, bool changed, cf_number *n) {
+    const double end = ldexp(1, 8 * (int)snow_type_size(type));
+    const double low = is_signed(type) ? -end / 2 : 0, high = low + end;
+    if (type == SNOW_TYPE_FLOAT64)
+        return true;
+    if (type == SNOW_TYPE_FLOAT32) {
+        const bool finite = isfinite(n->value);
+        n->value = (double)(float)n->value;
+        return isfinite(n->value) || !finite;
+    }
+    if (changed && n->value < low)
+        n->value += end;
+    else if (changed && n->value >= high)
+        n->value -= end;
+    /* The largest of 64 bits are rounded up to the end. */
+    return n->value >= low && floor(n->value) == n->value &&
+           (n->value < high || (end == 0x1p64 && n->value <= high));
+}
+
+/* Numbers of an attribute in the type; 0, and a note, where it holds not
+ * all. */
+static int take_limit(snow_context *context, const cf_attribute *from,
+                      const char *name, const cf_values *values, bool changed,
+                      cf_number *out) {
+    const int count =
+        from->count > CF_MOST_NUMBERS ? CF_MOST_NUMBERS : (int)from->count;
+    bool right = !*from->text && from->count <= CF_MOST_NUMBERS;
+    for (int i = 0; i < count; i++) {
+        out[i] = from->numbers[i];
+        right = right && fits(values->type, changed, &out[i]);
+    }
+    if (!right)
+        snow_notify(context,
+                    "%s is ignored: it is %s; what it names is drawn as any "
+                    "other value",
+                    name,
+                    *from->text                     ? "a text"
+                    : from->count > CF_MOST_NUMBERS ? "longer than 64 numbers"
+                                                    : "no value of the type");
+    return right ? count : 0;
+}
+
+/* NC_FILL_SHORT and others of netcdf.h; none of bytes. */
+static void take_default(snow_type type, cf_values *out) {
+    cf_number fill = snow_cf_number(0x1.ep122);
+    switch (type) {
+    case SNOW_TYPE_INT16:
+        fill = snow_cf_number(-32767);
+        break;
+    case SNOW_TYPE_UINT16:
+        fill = snow_cf_number(65535);
+        break;
+    case SNOW_TYPE_INT32:
+        fill = snow_cf_number(-2147483647);
+        break;
+    case SNOW_TYPE_UINT32:
+        fill = snow_cf_number(4294967295);
+        break;
+    case SNOW_TYPE_INT64:
+        fill = (cf_number){-0x1p63, (uint64_t)INT64_MIN + 2};
+        break;
+    case SNOW_TYPE_UINT64:
+        fill = (cf_number){0x1p64, UINT64_MAX - 1};
+        break;
+    case SNOW_TYPE_FLOAT32:
+    case SNOW_TYPE_FLOAT64:
+        break;
+    default:
+        return;
+    }
+    if (fits(out->type, out->type != type, &fill))
+        out->fill[out->fills++] = fill;
+}
+
+static void take_range(const cf_number *low, const cf_number *high,
+                       cf_values *out) {
+    if (low && !isnan(low->value)) {
+        out->least = *low;
+        out->has_least = true;
+    }
+    if (high && !isnan(high->value)) {
+        out->most = *high;
+        out->has_most = true;
+    }
+}
+
+cf_values snow_cf_settle(snow_context *context, const cf_attributes *from,
+                         snow_type type, bool is_netcdf) {
+    cf_values out = snow_cf_values_default(type);
+    cf_number n[CF_MOST_NUMBERS];
+    out.scale = from->scale;
+    out.offset = from->offset;
+    if (is_integer(type) && from->sign && is_signed(type) == (from->sign > 0))
+        out.type = other_sign(type);
+    const bool changed = out.type != type;
+    for (int i = 0; i < LIMITS; i++) {
+        const int count = take_limit(context, &from->limits[i],
+                                     snow_cf_names[i], &out, changed, n);
+        for (int k = 0; k < count && i <= MISSING; k++)
+            if (!isnan(n[k].value))
+                out.fill[out.fills++] = n[k];
+        if (i == RANGE && count == 2)
+            take_range(&n[0], &n[1], &out);
+        else if (i >= LEAST && count == 1)
+            take_range(i == LEAST ? n : NULL, i == MOST ? n : NULL, &out);
+    }
+    if (is_netcdf && !from->limits[FILL].count && !*from->limits[FILL].text) {
+        out.rare = !out.fills && !out.has_least && !out.has_most &&
+                   is_integer(out.type);
+        take_default(type, &out);
+    }
+    return out;
+}
+
+/* --- values --------------------------------------------------------------- */
+
+static bool is_below(snow_type type, cf_number a, cf_number b) {
+    if (type == SNOW_TYPE_INT64)
+        return (int64_t)a.whole < (int64_t)b.whole;
+    return type == SNOW_TYPE_UINT64 ? a.whole < b.whole : a.value < b.value;
+}
+
+static bool is_missing(const cf_values *v, cf_number n) {
+    bool found = (v->has_least && is_below(v->type, n, v->least)) ||
+                 (v->has_most && is_below(v->type, v->most, n));
+    for (int i = 0; i < v->fills && !found; i++)
+        found = !is_below(v->type, n, v->fill[i]) &&
+                !is_below(v->type, v->fill[i], n);
+    return found;
+}
+
+static bool is_masked(const cf_values *values) {
+    return values->fills || values->has_least || values->has_most;
+}
+
+void snow_cf_decode(const cf_values *values, int64_t count, double *numbers) {
+    const double end = ldexp(1, 8 * (int)snow_type_size(values->type));
+    for (int64_t i = 0; i < count; i++) {
+        double value = numbers[i];
+        if (is_integer(values->type) && value < 0 && !is_signed(values->type))
+            value += end;
+        if (is_signed(values->type) && value >= end / 2)
+            value -= end;
+        numbers[i] = is_missing(values, snow_cf_number(value))
+                         ? NAN
+                         : value * values->scale + values->offset;
+    }
+}
+
+static snow_type float_type(snow_type type) {
+    return !is_integer(type)           ? type
+           : snow_type_size(type) <= 2 ? SNOW_TYPE_FLOAT32
+                                       : SNOW_TYPE_FLOAT64;
+}
+
+static cf_number number_at(const snow_volume *volume, int64_t i) {
+    cf_number n = {snow_volume_native(volume, i), 0};
+    if (is_integer(volume->info.type) &&
+        snow_type_size(volume->info.type) == sizeof n.whole)
+        memcpy(&n.whole, (const char *)volume->owned + 8 * i, sizeof n.whole);
+    return n;
+}
+
+static int64_t count_of(const snow_volume *volume) {
+    const int64_t *dims = volume->info.dims;
+    return dims[0] * dims[1] * dims[2];
+}
+
+/* Replaces missing values of `from` in `to`, which may be the same. */
+static void blank(const cf_values *values, const snow_volume *from,
+                  snow_volume *to) {
+    int64_t rounded = 0;
+    for (int64_t i = 0; i < count_of(to); i++) {
+        const cf_number n = number_at(from, i);
+        const bool missing = is_missing(values, n);
+        const double value = missing ? NAN : n.value;
+        if (!missing && to == from)
+            continue;
+        rounded += n.whole && !missing && fabs(n.value) > 0x1p53;
+        if (to->info.type == SNOW_TYPE_FLOAT32)
+            ((float *)to->owned)[i] = (float)value;
+        else
+            ((double *)to->owned)[i] = value;
+    }
+    if (rounded)
+        snow_notify(to->context,
+                    "%lld integers above 2^53 are rounded to float64, which "
+                    "can hold missing values beside them",
+                    (long long)rounded);
+}
+
+/* On failure the volume is closed. */
+static snow_status blank_volume(const cf_values *values, snow_volume **volume) {
+    snow_volume *old = *volume, *made = old;
+    snow_volume_info info = old->info;
+    info.type = float_type(info.type);
+    *volume = NULL;
+    if (info.type != old->info.type) {
+        const snow_status status = snow_volume_new(old->context, &info, &made);
+        if (status != SNOW_STATUS_OK) {
+            snow_volume_close(old);
+            return status;
+        }
+    }
+    blank(values, old, made);
+    if (made != old)
+        snow_volume_close(old);
+    *volume = made;
+    return SNOW_STATUS_OK;
+}
+
+/* --- rare fill values ----------------------------------------------------- */
+
+static bool has_any(const cf_values *values, const snow_volume *volume) {
+    bool found = false;
+    for (int64_t i = 0; i < count_of(volume) && !found; i++)
+        found = is_missing(values, number_at(volume, i));
+    return found;
+}
+
+/* Looks for a rare fill value in the whole step, of which a box may be read,
+ * so that all boxes have one type.  What cannot be read may have it. */
+static snow_status search(snow_context *context, cf_values *values,
+                          cf_read_fn *read, void *user,
+                          const snow_volume_options *options,
+                          const snow_volume_info *info, bool *found) {
+    snow_volume_options whole = *options;
+    snow_volume_info step = *info;
+    snow_volume *volume = NULL;
+    snow_warning_fn *warning = context->warning;
+    memset(whole.crop, 0, sizeof whole.crop);
+    context->warning = NULL;
+    snow_status status = read(user, &whole, &step, &volume);
+    context->warning = warning;
+    if (status == SNOW_STATUS_STOPPED || status == SNOW_STATUS_NO_MEMORY)
+        return status;
+    *found = status != SNOW_STATUS_OK || has_any(values, volume);
+    snow_volume_close(volume);
+    return SNOW_STATUS_OK;
+}
+
+/* `info` is of the whole step, `volume` NULL or what was read. */
+static snow_status settle_rare(snow_context *context, cf_values *values,
+                               cf_read_fn *read, void *user,
+                               const snow_volume_options *options,
+                               const snow_volume_info *info,
+                               const snow_volume *volume) {
+    int64_t voxels;
+    uint64_t bytes;
+    bool found = true;
+    if (!values->rare)
+        return SNOW_STATUS_OK;
+    if (snow_volume_count(info->dims, info->type, &voxels, &bytes) &&
+        bytes <= SEARCHED_BYTES) {
+        if (volume && count_of(volume) == voxels)
+            found = has_any(values, volume);
+        else
+            SNOW_TRY(
+                search(context, values, read, user, options, info, &found));
+    }
+    values->rare = false;
+    if (!found)
+        values->fills = 0;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_cf_read(snow_context *context, cf_values *values,
+                         cf_read_fn *read, void *user,
+                         const snow_volume_options *options,
+                         snow_volume_info *info, snow_volume **out) {
+    const snow_volume_info whole = *info;
+    snow_volume *volume = NULL;
+    SNOW_TRY(read(user, options, info, out ? &volume : NULL));
+    snow_status status =
+        settle_rare(context, values, read, user, options, &whole, volume);
+    if (status != SNOW_STATUS_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    if (volume && is_masked(values))
+        SNOW_TRY(blank_volume(values, &volume));
+    if (is_masked(values))
+        info->type = float_type(info->type);
+    info->slope = values->scale;
+    info->intercept = values->offset;
+    if (out)
+        *out = volume;
+    return SNOW_STATUS_OK;
+}
