@@ -12,6 +12,7 @@
 #include <string.h>
 
 typedef enum calendar {
+    CALENDAR_UNKNOWN,
     CALENDAR_GREGORIAN, /* Julian before 1582-10-15 */
     CALENDAR_PROLEPTIC, /* Gregorian always */
     CALENDAR_JULIAN,
@@ -33,17 +34,22 @@ static calendar calendar_of(const char *name) {
     static const struct {
         const char *name;
         calendar is;
-    } names[] = {{"proleptic_gregorian", CALENDAR_PROLEPTIC},
+    } names[] = {{"", CALENDAR_GREGORIAN},
+                 {"standard", CALENDAR_GREGORIAN},
+                 {"gregorian", CALENDAR_GREGORIAN},
+                 {"proleptic_gregorian", CALENDAR_PROLEPTIC},
                  {"julian", CALENDAR_JULIAN},
                  {"noleap", CALENDAR_NO_LEAP},
                  {"365_day", CALENDAR_NO_LEAP},
                  {"all_leap", CALENDAR_ALL_LEAP},
                  {"366_day", CALENDAR_ALL_LEAP},
-                 {"360_day", CALENDAR_360}};
+                 {"360_day", CALENDAR_360},
+                 {"360", CALENDAR_360},
+                 {"thirty_day_months", CALENDAR_360}}; /* FMS */
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (snow_same_name(name, names[i].name))
             return names[i].is;
-    return CALENDAR_GREGORIAN;
+    return CALENDAR_UNKNOWN;
 }
 
 /* Leap days before a year that begins in March, of calendars that have some in
@@ -120,13 +126,26 @@ static double seconds_in(const char *unit, size_t length) {
     return 0;
 }
 
+/* Seconds that a clock is before that of Greenwich: "+05:30", "-0600", "-6"
+ * behind the time of "2000-01-01 00:00:00 -6". */
+static double zone_of(const char *date) {
+    const char *time = strpbrk(date, " T");
+    const char *sign = time ? strpbrk(time, "+-") : NULL;
+    int hours = 0, minutes = 0;
+    if (!sign || sscanf(sign + 1, "%2d%*[:]%2d", &hours, &minutes) < 1)
+        return 0;
+    if (!minutes && strspn(sign + 1, "0123456789") == 4)
+        sscanf(sign + 3, "%2d", &minutes);
+    return (*sign == '-' ? -60.0 : 60.0) * (60 * hours + minutes);
+}
+
 /* The moment that a time means; false for a unit without a date. */
 static bool find_moment(const snow_volume_info *info, moment *out) {
     const char *since = strstr(info->time_unit, " since ");
     calendar c = calendar_of(info->calendar);
     long long year;
     double second = 0;
-    if (!since)
+    if (!since || c == CALENDAR_UNKNOWN)
         return false;
     double unit =
         seconds_in(info->time_unit, (size_t)(since - info->time_unit));
@@ -139,7 +158,7 @@ static bool find_moment(const snow_volume_info *info, moment *out) {
         return false;
     out->year = year;
     double seconds = info->time_value * unit + out->hour * 3600.0 +
-                     out->minute * 60.0 + second;
+                     out->minute * 60.0 + second - zone_of(since + 7);
     double days = floor((seconds + 0.5) / 86400);
     int rest = (int)floor(seconds + 0.5 - days * 86400);
     if (!(fabs(days) < 1e9))

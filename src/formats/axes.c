@@ -32,6 +32,13 @@ bool snow_axes_assign(int rank, const int64_t sizes[SNOW_MOST_AXES],
     for (int i = 0; i < rank; i++)
         if (i != out->time)
             left[count++] = i;
+    /* Axes of one entry that a program has added behind x: (z, y, x, 1, 1). */
+    while (count > 4 && sizes[left[0]] == 1 && sizes[left[1]] == 1 &&
+           !hints[left[0]].space && !hints[left[0]].components) {
+        count--;
+        for (int i = 0; i < count; i++)
+            left[i] = left[i + 1];
+    }
     const int at = find_components(sizes, hints, left, count);
     if (at >= 0) {
         out->channel = left[at];

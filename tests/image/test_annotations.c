@@ -48,7 +48,16 @@ static void dates_are_those_of_their_calendar(void **state) {
          "1899-12-31 23:45:00"},
         {"days since 1-1-1", "360_day", 400000.5, "1112-02-11 12:00:00"},
         {"days since 4-2-29", "julian", 1461.0, "0008-02-29 00:00:00"},
-        {"days since 2100-2-28", "standard", 1.0, "2100-03-01 00:00:00"}};
+        {"days since 2100-2-28", "standard", 1.0, "2100-03-01 00:00:00"},
+        {"days since 2001-2-28", "THIRTY_DAY_MONTHS", 2.0,
+         "2001-02-30 00:00:00"},
+        {"days since 2001-2-28", "360", 2.0, "2001-02-30 00:00:00"},
+        {"hours since 2000-01-01T12:00:00+05:30", "", 1.0,
+         "2000-01-01 07:30:00"},
+        {"days since 2000-01-01 00:00 +0530", "", 1.0, "2000-01-01 18:30:00"},
+        /* CF 4.4 has this one; cftime wants two digits */
+        {"seconds since 1992-10-8 15:15:42.5 -6:00", "", 0.5,
+         "1992-10-08 21:15:43"}};
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
         char text[64];
         snow_volume_info info =
@@ -93,6 +102,18 @@ static void times_are_written_as_asked(void **state) {
                 snow_time_text(&info, rows[n].format, tight, sizeof tight));
         info.time_value = NAN;
         assert_false(snow_time_text(&info, rows[n].format, text, sizeof text));
+    }
+}
+
+static void calendars_that_are_not_known_have_numbers(void **state) {
+    (void)state;
+    static const char *const names[] = {"no_calendar", "utc", "tai", "nolep"};
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        char text[64];
+        snow_volume_info info =
+            at_time("days since 2000-01-01", names[n], 60.0);
+        assert_true(snow_time_text(&info, NULL, text, sizeof text));
+        assert_string_equal(text, "60 days since 2000-01-01");
     }
 }
 
@@ -280,6 +301,7 @@ int main(void) {
                                     support_image_teardown)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(dates_are_those_of_their_calendar),
+        cmocka_unit_test(calendars_that_are_not_known_have_numbers),
         cmocka_unit_test(times_are_written_as_asked),
         HERE(a_box_face_on_is_its_rectangle),
         HERE(edges_behind_are_hidden_by_the_picture),

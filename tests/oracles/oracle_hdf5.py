@@ -232,6 +232,33 @@ values[packed == -999] = np.nan
 oracle.expect("g.h5", values, oracle.affine((3, -0.5, 2), (1, 9, 0)),
               dtype=np.float32, unit="km")
 
+# Axes of one entry, which ilastik and others add.
+for shape in ((4, 5, 6, 1), (1, 4, 5, 6, 1), (4, 5, 6, 1, 1), (1, 1, 4, 5, 6),
+              (1, 4, 1, 5, 6)):
+    with h5py.File("o.h5", "w") as file:
+        file["only"] = oracle.sample("u1", shape)
+        file["names"] = np.zeros((3, 2))
+    if shape != (1, 4, 1, 5, 6):
+        oracle.expect("o.h5", oracle.sample("u1", shape).reshape(4, 5, 6),
+                      name=f"{shape}")
+
+# VTK's file says which of its arrays is active.
+with h5py.File("v.h5", "w") as file:
+    group = file.create_group("VTKHDF")
+    group.attrs["Type"] = np.bytes_("ImageData")
+    group.attrs["WholeExtent"] = [0, 5, 0, 4, 0, 3]
+    group.attrs["Spacing"] = [1.0, 2, 3]
+    for name in "abc":
+        file[f"VTKHDF/PointData/{name}"] = oracle.sample("f4", (4, 5, 6),
+                                                         ord(name))
+    file["VTKHDF/PointData"].attrs["Scalars"] = np.bytes_("b")
+oracle.expect("v.h5", oracle.sample("f4", (4, 5, 6), ord("b")),
+              oracle.affine((1, 2, 3)), name="the active array")
+oracle.says("the active array", "v.h5", "/VTKHDF/PointData/b is taken")
+with h5py.File("v.h5", "a") as file:
+    file["VTKHDF/PointData"].attrs["Scalars"] = np.bytes_("d")
+oracle.refuse("v.h5", "holds 3 volumes", status=2)
+
 # Refused: other files' voxels, filters that are not there, cut files.
 with h5py.File("h.h5", "w") as file:
     layout = h5py.VirtualLayout((20, 30, 40), "<f4")

@@ -204,6 +204,18 @@ if path:
                       oracle.affine((2, 1, 2), (1, -79.5, 0)),
                       ["--time", time], unit="degrees")
     oracle.refuse(path, "the file has 24", ["--time", 24], 2)
+# MINC is told by its variables, not by a version that old files lack.
+for beside, attributes in (("image-max", {}), ("rootvariable", {}),
+                           ("w", {"varid": "MINC standard variable"})):
+    write("m.mnc", "NETCDF3_CLASSIC", {"zspace": 4, "yspace": 5, "xspace": 6},
+          (beside, "f8", ("zspace",), np.ones(4)),
+          ("image", "i2", ("zspace", "yspace", "xspace"),
+           oracle.sample("i2", (4, 5, 6)), attributes))
+    oracle.refuse("m.mnc", "MINC")
+write("m.nc", "NETCDF3_CLASSIC", {"z": 7, "y": 6, "x": 5},
+      ("image", "f4", ZYX, oracle.sample("f4")))
+oracle.expect("m.nc", oracle.sample("f4"), name="an image that is no MINC")
+
 path = oracle.data("formats/minc/minc1_4d.mnc")
 if path:
     oracle.refuse(path, "MINC")

@@ -32,6 +32,19 @@ def attributes(path, values):
     oracle.put(os.path.join(path, ".zattrs"), json.dumps(values))
 
 
+# Files are nested, or not, though the metadata say the other or nothing.
+nested = oracle.sample("<u2", (13, 14, 15))
+for separator, told in itertools.product("./", "./"):
+    save("n.zarr", nested, chunks=(7, 8, 9), dimension_separator=separator)
+    meta = json.loads(oracle.got("n.zarr/.zarray"))
+    meta["dimension_separator"] = told
+    if told == ".":
+        del meta["dimension_separator"]
+    oracle.put("n.zarr/.zarray", json.dumps(meta))
+    oracle.expect("n.zarr", nested, name=f"{separator} told as {told}")
+    oracle.says("nested", "n.zarr", "between their numbers"
+                if separator != told else None)
+
 # Types, each in both byte orders.
 for kind in TYPES:
     a = oracle.sample(kind)

@@ -12,7 +12,8 @@
 
 /* The results of a search through the file. */
 typedef struct survey {
-    int axes; /* the fewest axes wanted */
+    int axes;      /* the fewest axes wanted */
+    bool anywhere; /* not the last ones: others may have one entry */
     long found;
     char first[HDF5_NAME_BYTES]; /* path of the first match */
     char list[800];              /* all matches, as far as they fit */
@@ -78,14 +79,13 @@ static void spell_sizes(const hdf5_set *set, char *text, size_t capacity) {
                                  (unsigned long long)set->sizes[i]);
 }
 
-/* In a volume of three axes none has the size 1. */
 static bool is_wanted(const survey *s, const hdf5_set *set) {
+    int wide = 0;
     if (set->axes < s->axes)
         return false;
-    for (int i = 0; i < s->axes; i++)
-        if (set->sizes[set->axes - 1 - i] < 2)
-            return false;
-    return true;
+    for (int i = 0; i < (s->anywhere ? set->axes : s->axes); i++)
+        wide += set->sizes[set->axes - 1 - i] > 1;
+    return wide >= s->axes;
 }
 
 static void note(survey *s, const char *name, const hdf5_set *set) {
@@ -152,10 +152,14 @@ snow_status snow_hdf5_visit(snow_context *context, hid_t file,
     return SNOW_STATUS_OK;
 }
 
-/* Finds all volumes of the file; if there are none, images with two axes. */
+/* Finds all volumes of the file; if there are none, those with further axes of
+ * one entry, or images with two axes. */
 static snow_status find_only(snow_context *context, hid_t file, survey *s) {
-    for (s->axes = 3; s->axes >= 2 && !s->found; s->axes--)
+    for (int way = 0; way < 3 && !s->found; way++) {
+        s->axes = way < 2 ? 3 : 2;
+        s->anywhere = way == 1;
         SNOW_TRY(snow_hdf5_visit(context, file, look, s));
+    }
     if (s->found == 1)
         return SNOW_STATUS_OK;
     if (!s->found)

@@ -274,7 +274,15 @@ static snow_status read_step(snow_context *context, const hdf5_file *file,
     snow_volume_options own = *options;
     hdf5_series series;
     hdf5_set set;
+    char active[HDF5_NAME_BYTES];
     SNOW_TRY(snow_hdf5_find_step(context, id, options, &series));
+    if (!own.dataset && snow_hdf5_active_image(file, active)) {
+        own.dataset = active;
+        snow_notify(context,
+                    "%s is taken, which the file says is active; "
+                    "--dataset selects another",
+                    active);
+    }
     if (series.given) {
         own.dataset = series.path;
         own.time = 0;

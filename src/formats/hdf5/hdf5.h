@@ -124,6 +124,9 @@ void snow_hdf5_place(snow_context *context, const hdf5_file *file,
                      const snow_volume_options *options, snow_volume_info *info,
                      snow_uneven *grid);
 
+/* The array that VTK's file says is active; false: none. */
+bool snow_hdf5_active_image(const hdf5_file *file, char path[HDF5_NAME_BYTES]);
+
 /* Image data that VTK wrote: the first sets the matrix, and is false for other
  * data; then the time; then which axes are time and components, if it has
  * steps. */

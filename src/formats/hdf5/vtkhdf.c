@@ -4,6 +4,7 @@
  *       Type             "ImageData"
  *       WholeExtent, Origin, Spacing
  *       Direction        rows of a matrix; its columns are the axes
+ *       PointData        Scalars: the name of the active array
  *       PointData/rho    values at points
  *       CellData/rho     values of cells
  *       Steps/Values     times, where arrays have an axis of time before z
@@ -13,6 +14,7 @@
 #if SNOW_HAVE_HDF5
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define ROOT "/VTKHDF"
@@ -34,6 +36,26 @@ static hid_t open_root(const hdf5_file *file, const hdf5_set *set) {
         return root;
     H5Oclose(root);
     return -1;
+}
+
+bool snow_hdf5_active_image(const hdf5_file *file, char path[HDF5_NAME_BYTES]) {
+    static const char *const groups[] = {ROOT "/PointData", ROOT "/CellData"};
+    const hid_t id = snow_hdf5_id(file);
+    char name[128] = "";
+    bool found = false;
+    for (int i = 0; i < 2 && !found && H5Lexists(id, ROOT, H5P_DEFAULT) > 0;
+         i++) {
+        hid_t group = H5Lexists(id, groups[i], H5P_DEFAULT) > 0
+                          ? H5Oopen(id, groups[i], H5P_DEFAULT)
+                          : -1;
+        if (group < 0)
+            continue;
+        snow_hdf5_text(file, group, "Scalars", 0, name, sizeof name);
+        snprintf(path, HDF5_NAME_BYTES, "%s/%s", groups[i], name);
+        found = *name && H5Lexists(group, name, H5P_DEFAULT) > 0;
+        H5Oclose(group);
+    }
+    return found;
 }
 
 bool snow_hdf5_place_image(const hdf5_file *file, const hdf5_set *set,

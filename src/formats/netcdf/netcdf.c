@@ -23,15 +23,15 @@ static int64_t size_of(const netcdf_header *header, const netcdf_variable *v,
                           : 1;
 }
 
-/* Returns whether a variable could be a volume, by its last axes. */
+/* Returns whether a variable could be a volume, by its last axes, or by any. */
 static bool is_volume(const netcdf_header *header, const netcdf_variable *v,
-                      int axes) {
+                      int axes, bool anywhere) {
+    int wide = 0;
     if (!v->type || v->axes < axes || v->axes > NETCDF_MOST_AXES)
         return false;
-    for (int i = 0; i < axes; i++)
-        if (size_of(header, v, i) < 2)
-            return false;
-    return true;
+    for (int i = 0; i < (anywhere ? v->axes : axes); i++)
+        wide += size_of(header, v, i) > 1;
+    return wide >= axes;
 }
 
 /* Appends the name of a variable and its sizes to the list. */
@@ -47,13 +47,19 @@ static void note(const netcdf_header *header, const netcdf_variable *v,
                  v->name, sizes);
 }
 
-/* The only variable with three axes or, if there is none, with two. */
+/* The only variable with three axes or, if there is none, with as many beside
+ * axes of one entry, or with two. */
 static snow_status find_only(const netcdf_header *header, char *list,
                              size_t capacity, const netcdf_variable **out) {
+    static const struct {
+        int axes;
+        bool anywhere;
+    } ways[] = {{3, false}, {3, true}, {2, false}};
     int found = 0;
-    for (int axes = 3; axes >= 2 && !found; axes--)
+    for (int n = 0; n < 3 && !found; n++)
         for (int64_t i = 0; i < header->variable_count; i++)
-            if (is_volume(header, &header->variables[i], axes)) {
+            if (is_volume(header, &header->variables[i], ways[n].axes,
+                          ways[n].anywhere)) {
                 *out = &header->variables[i];
                 note(header, *out, list, capacity);
                 found++;
@@ -327,12 +333,41 @@ static snow_status read_job(netcdf_job *job, const snow_volume_options *options,
                : read_voxels(job, options, info, out);
 }
 
+static void look_for_minc(void *user, const char *name,
+                          const cf_attribute *given) {
+    bool *found = user;
+    *found |= !strcmp(name, "varid") &&
+              !strcmp(given->text, "MINC standard variable");
+}
+
+/* MINC scales each slice by tables of its own.  Its image is called so, beside
+ * its limits or the root of its variables, or has the mark of MINC. */
+static snow_status refuse_minc(const netcdf_header *header,
+                               snow_seekable *bytes) {
+    bool image = false, beside = false;
+    for (int64_t i = 0; i < header->variable_count; i++) {
+        const netcdf_variable *v = &header->variables[i];
+        if (!strcmp(v->name, "image")) {
+            image = true;
+            snow_netcdf_attributes(header, bytes, v, look_for_minc, &beside);
+        }
+        beside |=
+            !strcmp(v->name, "image-max") || !strcmp(v->name, "rootvariable");
+    }
+    if (!image || !beside)
+        return SNOW_STATUS_OK;
+    return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
+                     "is a MINC file, whose values are scaled slice by slice; "
+                     "convert it with mnc2nii");
+}
+
 static snow_status read_file(snow_source *source, snow_seekable *bytes,
                              const snow_volume_options *options,
                              const netcdf_header *header,
                              snow_volume_info *info, snow_volume **out) {
     netcdf_job job = {.source = source, .bytes = bytes, .header = header};
     snow_volume *volume = NULL;
+    SNOW_TRY(refuse_minc(header, bytes));
     SNOW_TRY(find_variable(header, options->dataset, &job.variable));
     snow_status status = read_job(&job, options, info, out ? &volume : NULL);
     snow_cf_release(header->context, job.axes, 4);

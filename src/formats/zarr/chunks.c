@@ -30,7 +30,7 @@ typedef struct cells {
 } cells;
 
 typedef struct filler {
-    const zarr_box *box;
+    zarr_box *box;
     snow_context *context;
     unsigned char *voxels;
     uint64_t step[ZARR_MOST_AXES];  /* strides of values in a chunk */
@@ -78,17 +78,16 @@ static cells cells_of_box(const zarr_box *box, const int64_t *sizes) {
 
 /* "scale0/image/c/0/1/2" */
 static snow_status name_file(const zarr_box *box, const int64_t *at,
-                             char out[ZARR_PATH_BYTES]) {
+                             char separator, char out[ZARR_PATH_BYTES]) {
     const zarr_array *array = box->array;
     char numbers[24 * ZARR_MOST_AXES] = "";
     size_t used = 0;
     if (array->prefixed)
-        used =
-            (size_t)snprintf(numbers, sizeof numbers, "c%c", array->separator);
+        used = (size_t)snprintf(numbers, sizeof numbers, "c%c", separator);
     for (int i = 0; i < array->axes; i++)
         used +=
             (size_t)snprintf(numbers + used, sizeof numbers - used, "%.*s%lld",
-                             i ? 1 : 0, &array->separator, (long long)at[i]);
+                             i ? 1 : 0, &separator, (long long)at[i]);
     if (snow_zarr_join(array->path, numbers, out))
         return SNOW_STATUS_OK;
     return snow_zarr_fail(box->store, "",
@@ -97,11 +96,37 @@ static snow_status name_file(const zarr_box *box, const int64_t *at,
                           ZARR_PATH_BYTES);
 }
 
+/* Opens the file of a chunk or shard.  Some programs nest the files and do not
+ * say so, or the reverse: where none was found yet, that is tried too. */
+static snow_status open_file(zarr_box *box, const int64_t *at, zarr_file *out) {
+    const char own = box->array->separator, other = own == '/' ? '.' : '/';
+    char name[ZARR_PATH_BYTES];
+    SNOW_TRY(name_file(box, at, box->separator ? box->separator : own, name));
+    SNOW_TRY(snow_zarr_open(box->store, name, out));
+    if (box->separator || out->is_there) {
+        box->separator = box->separator ? box->separator : own;
+        return SNOW_STATUS_OK;
+    }
+    zarr_file nested;
+    SNOW_TRY(name_file(box, at, other, name));
+    SNOW_TRY(snow_zarr_open(box->store, name, &nested));
+    if (!nested.is_there)
+        return SNOW_STATUS_OK;
+    *out = nested;
+    box->separator = other;
+    if (box->array->axes > 1)
+        snow_notify(box->store->context,
+                    "the names of its chunks have \"%c\" between their "
+                    "numbers, not \"%c\" as its metadata say",
+                    other, own);
+    return SNOW_STATUS_OK;
+}
+
 /* --- before anything is read ---------------------------------------------- */
 
 /* Missing chunks are valid, but not so many that a few bytes fill the
  * memory. */
-snow_status snow_zarr_check_box(const zarr_box *box, uint64_t bytes) {
+snow_status snow_zarr_check_box(zarr_box *box, uint64_t bytes) {
     const zarr_array *array = box->array;
     cells files = cells_of_box(box, array->file);
     cells chunks = cells_of_box(box, array->chunk);
@@ -112,12 +137,10 @@ snow_status snow_zarr_check_box(const zarr_box *box, uint64_t bytes) {
                               "larger ones, or use --crop",
                               (long long)MOST_PIECES);
     do {
-        char name[ZARR_PATH_BYTES];
         zarr_file file;
         if (most >= bytes)
             return SNOW_STATUS_OK;
-        SNOW_TRY(name_file(box, files.at, name));
-        SNOW_TRY(snow_zarr_open(box->store, name, &file));
+        SNOW_TRY(open_file(box, files.at, &file));
         held += file.size;
         snow_zarr_close(&file);
         if (!snow_mul_u64(held, MOST_RATIO, &most) ||
@@ -339,10 +362,8 @@ static snow_status take_file(filler *f, const int64_t *at,
 static snow_status take_files(filler *f) {
     cells files = cells_of_box(f->box, f->box->array->file);
     do {
-        char name[ZARR_PATH_BYTES];
         zarr_file file;
-        SNOW_TRY(name_file(f->box, files.at, name));
-        SNOW_TRY(snow_zarr_open(f->box->store, name, &file));
+        SNOW_TRY(open_file(f->box, files.at, &file));
         snow_status status = take_file(f, files.at, &file);
         snow_zarr_close(&file);
         SNOW_TRY(status);
@@ -369,7 +390,7 @@ static void lay_steps(filler *f) {
     f->all = (double)step;
 }
 
-snow_status snow_zarr_fill(const zarr_box *box, unsigned char *voxels) {
+snow_status snow_zarr_fill(zarr_box *box, unsigned char *voxels) {
     filler f = {.box = box, .context = box->store->context, .voxels = voxels};
     lay_steps(&f);
     snow_status status = take_files(&f);

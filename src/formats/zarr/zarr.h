@@ -284,14 +284,15 @@ typedef struct zarr_box {
     const zarr_array *array;
     zarr_roles roles;
     int64_t first[ZARR_MOST_AXES], end[ZARR_MOST_AXES];
+    char separator; /* of the files that there are; 0: none was found yet */
 } zarr_box;
 
 /* Refuses a box with more voxels than its files can fill, or with too many
  * files and chunks. */
-snow_status snow_zarr_check_box(const zarr_box *box, uint64_t bytes);
+snow_status snow_zarr_check_box(zarr_box *box, uint64_t bytes);
 
 /* Reads it into the voxels of its volume. */
-snow_status snow_zarr_fill(const zarr_box *box, unsigned char *voxels);
+snow_status snow_zarr_fill(zarr_box *box, unsigned char *voxels);
 
 /* --- zarr.c --------------------------------------------------------------- */
 
