@@ -68,8 +68,8 @@ typedef struct cf_values {
     double scale, offset;
     cf_number fill[CF_MOST_NUMBERS + 2];
     int fills;
-    cf_number least, most; /* valid values, if there are limits */
-    bool has_least, has_most;
+    cf_number least, most; /* valid values, if they are limited */
+    bool limited;
     bool rare; /* the only fill value is one that few integers have, and nobody
                   gave it: they stay integers unless they have it */
 } cf_values;
@@ -126,8 +126,7 @@ typedef snow_uneven_fn cf_read_fn;
 
 /* Reads them as data: missing ones are NaN, for which integers become floats;
  * sets type, slope and intercept. */
-snow_status snow_cf_read(snow_context *context, cf_values *values,
-                         cf_read_fn *read, void *user,
+snow_status snow_cf_read(cf_values *values, cf_read_fn *read, void *user,
                          const snow_volume_options *options,
                          snow_volume_info *info, snow_volume **out);
 

@@ -90,10 +90,6 @@ void snow_cf_take(const char *name, const cf_attribute *given,
 
 /* --- what it means -------------------------------------------------------- */
 
-cf_values snow_cf_values_default(snow_type type) {
-    return (cf_values){.type = type, .scale = 1};
-}
-
 static bool is_integer(snow_type type) {
     return type < SNOW_TYPE_FLOAT32;
 }
@@ -101,6 +97,13 @@ static bool is_integer(snow_type type) {
 static bool is_signed(snow_type type) {
     return type == SNOW_TYPE_INT8 || type == SNOW_TYPE_INT16 ||
            type == SNOW_TYPE_INT32 || type == SNOW_TYPE_INT64;
+}
+
+cf_values snow_cf_values_default(snow_type type) {
+    return (cf_values){.type = type,
+                       .scale = 1,
+                       .least = {-INFINITY, (uint64_t)INT64_MIN},
+                       .most = {INFINITY, INT64_MAX}};
 }
 
 /* Integers of NetCDF's old versions are signed, bytes of HDF4 unsigned. */
@@ -162,46 +165,23 @@ static int take_limit(snow_context *context, const cf_attribute *from,
 
 /* NC_FILL_SHORT and others of netcdf.h; none of bytes. */
 static void take_default(snow_type type, cf_values *out) {
-    cf_number fill = snow_cf_number(0x1.ep122);
-    switch (type) {
-    case SNOW_TYPE_INT16:
-        fill = snow_cf_number(-32767);
-        break;
-    case SNOW_TYPE_UINT16:
-        fill = snow_cf_number(65535);
-        break;
-    case SNOW_TYPE_INT32:
-        fill = snow_cf_number(-2147483647);
-        break;
-    case SNOW_TYPE_UINT32:
-        fill = snow_cf_number(4294967295);
-        break;
-    case SNOW_TYPE_INT64:
-        fill = (cf_number){-0x1p63, (uint64_t)INT64_MIN + 2};
-        break;
-    case SNOW_TYPE_UINT64:
-        fill = (cf_number){0x1p64, UINT64_MAX - 1};
-        break;
-    case SNOW_TYPE_FLOAT32:
-    case SNOW_TYPE_FLOAT64:
-        break;
-    default:
-        return;
-    }
-    if (fits(out->type, out->type != type, &fill))
-        out->fill[out->fills++] = fill;
-}
-
-static void take_range(const cf_number *low, const cf_number *high,
-                       cf_values *out) {
-    if (low && !isnan(low->value)) {
-        out->least = *low;
-        out->has_least = true;
-    }
-    if (high && !isnan(high->value)) {
-        out->most = *high;
-        out->has_most = true;
-    }
+    static const struct {
+        snow_type type;
+        cf_number fill;
+    } fills[] = {{SNOW_TYPE_INT16, {-32767, 0}},
+                 {SNOW_TYPE_UINT16, {65535, 0}},
+                 {SNOW_TYPE_INT32, {-2147483647, 0}},
+                 {SNOW_TYPE_UINT32, {4294967295, 0}},
+                 {SNOW_TYPE_INT64, {-0x1p63, (uint64_t)INT64_MIN + 2}},
+                 {SNOW_TYPE_UINT64, {0x1p64, UINT64_MAX - 1}},
+                 {SNOW_TYPE_FLOAT32, {0x1.ep122, 0}},
+                 {SNOW_TYPE_FLOAT64, {0x1.ep122, 0}}};
+    for (size_t i = 0; i < sizeof fills / sizeof *fills; i++)
+        if (fills[i].type == type) {
+            out->fill[out->fills] = fills[i].fill;
+            out->fills +=
+                fits(out->type, out->type != type, &out->fill[out->fills]);
+        }
 }
 
 cf_values snow_cf_settle(snow_context *context, const cf_attributes *from,
@@ -212,6 +192,10 @@ cf_values snow_cf_settle(snow_context *context, const cf_attributes *from,
     out.offset = from->offset;
     if (is_integer(type) && from->sign && is_signed(type) == (from->sign > 0))
         out.type = other_sign(type);
+    if (out.type == SNOW_TYPE_UINT64) {
+        out.least.whole = 0;
+        out.most.whole = UINT64_MAX;
+    }
     const bool changed = out.type != type;
     for (int i = 0; i < LIMITS; i++) {
         const int count = take_limit(context, &from->limits[i],
@@ -219,14 +203,14 @@ cf_values snow_cf_settle(snow_context *context, const cf_attributes *from,
         for (int k = 0; k < count && i <= MISSING; k++)
             if (!isnan(n[k].value))
                 out.fill[out.fills++] = n[k];
-        if (i == RANGE && count == 2)
-            take_range(&n[0], &n[1], &out);
-        else if (i >= LEAST && count == 1)
-            take_range(i == LEAST ? n : NULL, i == MOST ? n : NULL, &out);
+        if (count == (i == RANGE ? 2 : 1) && i >= RANGE) {
+            out.least = i != MOST ? n[0] : out.least;
+            out.most = i != LEAST ? n[count - 1] : out.most;
+            out.limited = true;
+        }
     }
     if (is_netcdf && !from->limits[FILL].count && !*from->limits[FILL].text) {
-        out.rare = !out.fills && !out.has_least && !out.has_most &&
-                   is_integer(out.type);
+        out.rare = !out.fills && !out.limited && is_integer(out.type);
         take_default(type, &out);
     }
     return out;
@@ -234,6 +218,7 @@ cf_values snow_cf_settle(snow_context *context, const cf_attributes *from,
 
 /* --- values --------------------------------------------------------------- */
 
+/* Never of a NaN. */
 static bool is_below(snow_type type, cf_number a, cf_number b) {
     if (type == SNOW_TYPE_INT64)
         return (int64_t)a.whole < (int64_t)b.whole;
@@ -241,8 +226,8 @@ static bool is_below(snow_type type, cf_number a, cf_number b) {
 }
 
 static bool is_missing(const cf_values *v, cf_number n) {
-    bool found = (v->has_least && is_below(v->type, n, v->least)) ||
-                 (v->has_most && is_below(v->type, v->most, n));
+    bool found =
+        is_below(v->type, n, v->least) || is_below(v->type, v->most, n);
     for (int i = 0; i < v->fills && !found; i++)
         found = !is_below(v->type, n, v->fill[i]) &&
                 !is_below(v->type, v->fill[i], n);
@@ -250,7 +235,7 @@ static bool is_missing(const cf_values *v, cf_number n) {
 }
 
 static bool is_masked(const cf_values *values) {
-    return values->fills || values->has_least || values->has_most;
+    return values->fills || values->limited;
 }
 
 void snow_cf_decode(const cf_values *values, int64_t count, double *numbers) {
@@ -340,18 +325,14 @@ static bool has_any(const cf_values *values, const snow_volume *volume) {
 
 /* Looks for a rare fill value in the whole step, of which a box may be read,
  * so that all boxes have one type.  What cannot be read may have it. */
-static snow_status search(snow_context *context, cf_values *values,
-                          cf_read_fn *read, void *user,
+static snow_status search(const cf_values *values, cf_read_fn *read, void *user,
                           const snow_volume_options *options,
                           const snow_volume_info *info, bool *found) {
     snow_volume_options whole = *options;
     snow_volume_info step = *info;
     snow_volume *volume = NULL;
-    snow_warning_fn *warning = context->warning;
     memset(whole.crop, 0, sizeof whole.crop);
-    context->warning = NULL;
-    snow_status status = read(user, &whole, &step, &volume);
-    context->warning = warning;
+    const snow_status status = read(user, &whole, &step, &volume);
     if (status == SNOW_STATUS_STOPPED || status == SNOW_STATUS_NO_MEMORY)
         return status;
     *found = status != SNOW_STATUS_OK || has_any(values, volume);
@@ -360,8 +341,7 @@ static snow_status search(snow_context *context, cf_values *values,
 }
 
 /* `info` is of the whole step, `volume` NULL or what was read. */
-static snow_status settle_rare(snow_context *context, cf_values *values,
-                               cf_read_fn *read, void *user,
+static snow_status settle_rare(cf_values *values, cf_read_fn *read, void *user,
                                const snow_volume_options *options,
                                const snow_volume_info *info,
                                const snow_volume *volume) {
@@ -375,8 +355,7 @@ static snow_status settle_rare(snow_context *context, cf_values *values,
         if (volume && count_of(volume) == voxels)
             found = has_any(values, volume);
         else
-            SNOW_TRY(
-                search(context, values, read, user, options, info, &found));
+            SNOW_TRY(search(values, read, user, options, info, &found));
     }
     values->rare = false;
     if (!found)
@@ -384,15 +363,14 @@ static snow_status settle_rare(snow_context *context, cf_values *values,
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_cf_read(snow_context *context, cf_values *values,
-                         cf_read_fn *read, void *user,
+snow_status snow_cf_read(cf_values *values, cf_read_fn *read, void *user,
                          const snow_volume_options *options,
                          snow_volume_info *info, snow_volume **out) {
     const snow_volume_info whole = *info;
     snow_volume *volume = NULL;
     SNOW_TRY(read(user, options, info, out ? &volume : NULL));
     snow_status status =
-        settle_rare(context, values, read, user, options, &whole, volume);
+        settle_rare(values, read, user, options, &whole, volume);
     if (status != SNOW_STATUS_OK) {
         snow_volume_close(volume);
         return status;

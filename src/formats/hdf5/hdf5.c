@@ -231,8 +231,7 @@ static snow_status read_stored(void *user, const snow_volume_options *options,
 static snow_status read_voxels(void *user, const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
     hdf5_job *job = user;
-    return snow_cf_read(job->context, &job->values, read_stored, job, options,
-                        info, out);
+    return snow_cf_read(&job->values, read_stored, job, options, info, out);
 }
 
 static snow_status read_job(hdf5_job *job, const snow_volume_options *options,

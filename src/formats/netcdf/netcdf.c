@@ -320,8 +320,7 @@ static snow_status read_array(void *user, const snow_volume_options *options,
 static snow_status read_voxels(void *user, const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
     netcdf_job *job = user;
-    return snow_cf_read(job->header->context, &job->values, read_array, job,
-                        options, info, out);
+    return snow_cf_read(&job->values, read_array, job, options, info, out);
 }
 
 static snow_status read_job(netcdf_job *job, const snow_volume_options *options,

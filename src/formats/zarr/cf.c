@@ -52,7 +52,7 @@ static void convert(const char *name, const json_t *given, cf_attribute *out) {
     memset(out, 0, sizeof *out);
     for (size_t i = 0; i < json_array_size(given); i++)
         if (!add_number(json_array_get(given, i), out))
-            out->count = 0;
+            memcpy(out->text, "?", 2); /* no list of numbers */
     if (json_is_array(given) || add_number(given, out) || !text)
         return;
     if (!strcmp(name, "_FillValue") && read_base64(text, &value)) {

@@ -102,8 +102,10 @@ bool snow_zarr_number(const json_t *given, double *out) {
     static const struct {
         const char *name;
         double value;
-    } words[] = {
-        {"NaN", NAN}, {"Infinity", INFINITY}, {"-Infinity", -INFINITY}};
+    } words[] = {{"NaN", NAN},
+                 {"Infinity", INFINITY},
+                 {"-Infinity", -INFINITY},
+                 {"", NAN}}; /* what node.c makes of one without quotes */
     const char *text = json_string_value(given);
     if (!given || json_is_null(given) || json_is_false(given))
         *out = 0;
@@ -112,7 +114,7 @@ bool snow_zarr_number(const json_t *given, double *out) {
     else if (json_is_number(given))
         *out = json_number_value(given);
     else
-        for (size_t i = 0; i < 3; i++)
+        for (size_t i = 0; i < sizeof words / sizeof *words; i++)
             if (text && !strcmp(text, words[i].name)) {
                 *out = words[i].value;
                 return true;

@@ -22,41 +22,25 @@ snow_status snow_zarr_fail(const zarr_store *store, const char *path,
                      *store->folder || *path ? ": " : "", text);
 }
 
-/* Quotes NaN, Infinity and -Infinity, which JSON lacks and Python writes. */
-static size_t quote_specials(const char *text, size_t size, char *out) {
-    static const char *const words[] = {"NaN", "Infinity", "-Infinity"};
+/* Makes texts of NaN, Infinity and -Infinity, which JSON lacks and Python
+ * writes: "" and blanks. */
+static void blank_specials(char *text, size_t size) {
+    static const char *const words[] = {"NaN", "-Infinity", "Infinity"};
     bool inside = false;
-    size_t used = 0;
     for (size_t i = 0; i < size; i++) {
-        size_t letters = 0;
-        for (int n = 0; n < 3 && !inside; n++)
-            if (size - i >= strlen(words[n]) &&
-                !memcmp(text + i, words[n], strlen(words[n])))
-                letters = strlen(words[n]);
-        if (letters) {
-            used +=
-                (size_t)sprintf(out + used, "\"%.*s\"", (int)letters, text + i);
-            i += letters - 1;
-            continue;
+        for (int n = 0; n < 3 && !inside; n++) {
+            const size_t letters = strlen(words[n]);
+            if (size - i >= letters && !memcmp(text + i, words[n], letters)) {
+                memset(text + i, ' ', letters);
+                text[i] = text[i + 1] = '"';
+                i += letters - 1;
+            }
         }
-        if (text[i] == '"')
+        if (text[i] == '\\')
+            i++;
+        else if (text[i] == '"')
             inside = !inside;
-        if (text[i] == '\\' && inside && i + 1 < size)
-            out[used++] = text[i++];
-        out[used++] = text[i];
     }
-    return used;
-}
-
-/* The same text with these quoted, where it is no JSON as it is. */
-static json_t *parse_again(snow_context *context, const char *text,
-                           size_t size) {
-    char *quoted = snow_allocate(context, 2 * size + 1);
-    json_t *tree = NULL;
-    if (quoted)
-        tree = json_loadb(quoted, quote_specials(text, size, quoted), 0, NULL);
-    snow_release(context, quoted);
-    return tree;
 }
 
 static snow_status parse_file(const zarr_store *store, const zarr_file *file,
@@ -81,8 +65,10 @@ static snow_status parse_file(const zarr_store *store, const zarr_file *file,
         json_error_code(&error) == json_error_numeric_overflow)
         tree = json_loadb(text, (size_t)file->size, JSON_DECODE_INT_AS_REAL,
                           &error);
-    if (status == SNOW_STATUS_OK && !tree)
-        tree = parse_again(store->context, text, (size_t)file->size);
+    if (status == SNOW_STATUS_OK && !tree) {
+        blank_specials(text, (size_t)file->size);
+        tree = json_loadb(text, (size_t)file->size, 0, NULL);
+    }
     snow_release(store->context, text);
     if (status == SNOW_STATUS_OK && !json_is_object(tree)) {
         status = snow_fail(store->context, SNOW_STATUS_BAD_INPUT,

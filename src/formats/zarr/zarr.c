@@ -221,8 +221,7 @@ static snow_status read_stored(void *user, const snow_volume_options *options,
 static snow_status read_voxels(void *user, const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
     zarr_job *job = user;
-    return snow_cf_read(job->box.store->context, &job->cf.values, read_stored,
-                        job, options, info, out);
+    return snow_cf_read(&job->cf.values, read_stored, job, options, info, out);
 }
 
 /* What arrays of data sets have: coordinates, time, names. */
