@@ -150,6 +150,10 @@ for path, write in FORMS.items():
     oracle.expect(path, right, MATRIX, ["--dataset", "v"], "f8",
                   name=f"{path} 64 bits")
 
+zarr_2("b.zarr", {"v": (short, ZYX, {"valid_min": 32767, "add_offset": 1.0})})
+oracle.says("all missing", "b.zarr", "all voxels are missing")
+oracle.says("a box", "b.zarr", None, "--crop", "0:2,:,:")
+
 # NetCDF's own fill value, where its library has set it: not of bytes, not if the
 # variable is not filled, not in HDF5 and Zarr.  Integers without it stay so.
 for kind, fill in netCDF4.default_fillvals.items():

@@ -232,6 +232,29 @@ values[packed == -999] = np.nan
 oracle.expect("g.h5", values, oracle.affine((3, -0.5, 2), (1, 9, 0)),
               dtype=np.float32, unit="km")
 
+# More than eight attributes are in dense storage, one block of it or several;
+# labels of axes name the coordinates.
+a = oracle.sample("i2", (4, 5, 6))
+for count, length in ((0, 9), (7, 9), (30, 9), (60, 300)):
+    for first in (False, True):
+        with h5py.File("p.h5", "w", libver="latest") as file:
+            file["v"] = a
+            texts = [(f"more{i}", "x" * length) for i in range(count)]
+            says = [("_Unsigned", "true"), ("units", "K"), ("add_offset", 1.0)]
+            for name, text in says + texts if first else texts + says:
+                file["v"].attrs[name] = text
+        oracle.expect("p.h5", a.view("u2") + 1.0, dtype="u2",
+                      name=f"{count} attributes")
+        oracle.tells("p.h5", value_unit="K")
+with h5py.File("p.h5", "w") as file:
+    file["g/v"] = a
+    for axis, step in ((0, 2), (2, 3)):
+        file["g/v"].dims[axis].label = "yx"[axis // 2]
+        file["g"]["yx"[axis // 2]] = 7 + np.arange(a.shape[axis]) * step
+        file["g"]["yx"[axis // 2]].attrs["units"] = "mm"
+oracle.expect("p.h5", a, oracle.affine((3, 3, 2), (7, 0, 7)), unit="mm",
+              name="labels")
+
 # Axes of one entry, which ilastik and others add.
 for shape in ((4, 5, 6, 1), (1, 4, 5, 6, 1), (4, 5, 6, 1, 1), (1, 1, 4, 5, 6),
               (1, 4, 1, 5, 6)):

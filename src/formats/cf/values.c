@@ -273,12 +273,13 @@ static int64_t count_of(const snow_volume *volume) {
 
 /* Replaces missing values of `from` in `to`, which may be the same. */
 static void blank(const cf_values *values, const snow_volume *from,
-                  snow_volume *to) {
-    int64_t rounded = 0;
+                  bool is_whole, snow_volume *to) {
+    int64_t rounded = 0, left = 0;
     for (int64_t i = 0; i < count_of(to); i++) {
         const cf_number n = number_at(from, i);
         const bool missing = is_missing(values, n);
         const double value = missing ? NAN : n.value;
+        left += !missing;
         if (!missing && to == from)
             continue;
         rounded += n.whole && !missing && fabs(n.value) > 0x1p53;
@@ -287,6 +288,10 @@ static void blank(const cf_values *values, const snow_volume *from,
         else
             ((double *)to->owned)[i] = value;
     }
+    if (!left && is_whole)
+        snow_notify(to->context,
+                    "all voxels are missing, by _FillValue, missing_value or "
+                    "the range of valid values as they are stored");
     if (rounded)
         snow_notify(to->context,
                     "%lld integers above 2^53 are rounded to float64, which "
@@ -295,7 +300,8 @@ static void blank(const cf_values *values, const snow_volume *from,
 }
 
 /* On failure the volume is closed. */
-static snow_status blank_volume(const cf_values *values, snow_volume **volume) {
+static snow_status blank_volume(const cf_values *values, bool is_whole,
+                                snow_volume **volume) {
     snow_volume *old = *volume, *made = old;
     snow_volume_info info = old->info;
     info.type = float_type(info.type);
@@ -307,7 +313,7 @@ static snow_status blank_volume(const cf_values *values, snow_volume **volume) {
             return status;
         }
     }
-    blank(values, old, made);
+    blank(values, old, is_whole, made);
     if (made != old)
         snow_volume_close(old);
     *volume = made;
@@ -376,7 +382,9 @@ snow_status snow_cf_read(cf_values *values, cf_read_fn *read, void *user,
         return status;
     }
     if (volume && is_masked(values))
-        SNOW_TRY(blank_volume(values, &volume));
+        SNOW_TRY(blank_volume(
+            values, !memcmp(whole.dims, volume->info.dims, sizeof whole.dims),
+            &volume));
     if (is_masked(values))
         info->type = float_type(info->type);
     info->slope = values->scale;

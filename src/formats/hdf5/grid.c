@@ -17,6 +17,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 /* The most data sets that use one scale. */
@@ -296,17 +297,36 @@ static herr_t look_at_scale(hid_t file, const char *name,
     return s->status != SNOW_STATUS_OK;
 }
 
-/* What the labels of axes say, which h5py writes, where no scale does. */
-static void read_axis_labels(scales *s) {
-    char label[64];
+/* What the labels of axes say, which h5py writes, where no scale does.  A data
+ * set of that name beside the array has the coordinates. */
+static snow_status read_axis_labels(scales *s) {
+    char label[64], path[HDF5_NAME_BYTES + 64];
+    const char *set = s->set->path;
     for (int i = 0; i < s->set->axes; i++) {
         snow_axis_hint *hint = &s->hints[s->set->axes - 1 - i];
+        cf_axis *axis = &s->axes[s->set->axes - 1 - i];
         const cf_words words = {label, "", label, ""};
         snow_hdf5_text(s->file, s->set->id, "DIMENSION_LABELS", (size_t)i,
                        label, sizeof label);
-        if (*label && !hint->time && !hint->space && !hint->components)
-            *hint = snow_cf_hint(&words);
+        if (!*label || axis->coordinates || hint->time || hint->space ||
+            hint->components)
+            continue;
+        *hint = snow_cf_hint(&words);
+        snprintf(path, sizeof path, "%.*s%s",
+                 (int)(strrchr(set, '/') - set) + 1, set, label);
+        hid_t beside = strchr(label, '/') || H5Lexists(snow_hdf5_id(s->file),
+                                                       path, H5P_DEFAULT) <= 0
+                           ? -1
+                           : H5Dopen2(snow_hdf5_id(s->file), path, H5P_DEFAULT);
+        if (beside < 0)
+            continue;
+        *hint = hint_of(s, beside, label);
+        const snow_status status =
+            read_scale(s, beside, s->set->sizes[i], axis);
+        H5Dclose(beside);
+        SNOW_TRY(status);
     }
+    return SNOW_STATUS_OK;
 }
 
 /* NetCDF-4 and h5py: axes and scales refer to each other.  The references of
@@ -331,7 +351,7 @@ snow_status snow_hdf5_read_axes(snow_context *context, const hdf5_file *file,
     memset(out, 0, sizeof *out);
     SNOW_TRY(read_scales(&s));
     out->is_netcdf = s.is_netcdf;
-    read_axis_labels(&s);
+    SNOW_TRY(read_axis_labels(&s));
     snow_hdf5_hint_image(file, set, s.hints);
     for (int i = 0; i < HDF5_MOST_AXES; i++)
         sizes[i] = i < set->axes ? (int64_t)set->sizes[set->axes - 1 - i] : 1;

@@ -11,8 +11,12 @@
  *     reference          length, address of a collection, index of an object
  *     global heap        collection "GCOL": index, size and bytes of objects
  *
- * Attributes in dense storage, which files of libver "latest" use beyond eight,
- * are not found. */
+ * Attributes beyond eight may be in dense storage, the blocks of a fractal
+ * heap:
+ *
+ *     attribute info     address of the heap
+ *     FRHP               sizes of blocks; the root, which is a block or
+ *     FHIB               addresses of blocks, which hold attribute messages */
 #include "formats/hdf5/hdf5.h"
 
 #if SNOW_HAVE_HDF5
@@ -26,7 +30,14 @@
 /* Objects of a heap's collection that are passed. */
 #define MOST_OBJECTS 65536
 
-enum { MESSAGE_ATTRIBUTE = 0x0c, MESSAGE_CONTINUATION = 0x10 };
+/* Bytes of dense storage that are searched. */
+#define MOST_DENSE ((uint64_t)128 << 10)
+
+enum {
+    MESSAGE_ATTRIBUTE = 0x0c,
+    MESSAGE_CONTINUATION = 0x10,
+    MESSAGE_INFO = 0x15
+};
 
 /* A run of messages. */
 typedef struct block {
@@ -42,6 +53,7 @@ typedef struct search {
         ordered; /* of the object header; its messages are numbered */
     block blocks[MOST_BLOCKS];
     size_t count;
+    uint64_t heap; /* of attributes in dense storage; 0: none */
     unsigned char message[MOST_MESSAGE];
     char *out;
     size_t room;
@@ -152,16 +164,75 @@ static bool read_message(search *s, uint64_t *at) {
     const size_t size = (size_t)number(head + (s->version2 ? 1 : 2), 2);
     const uint64_t data = *at + bytes;
     *at = data + size;
-    if ((kind != MESSAGE_ATTRIBUTE && kind != MESSAGE_CONTINUATION) ||
+    if ((kind != MESSAGE_ATTRIBUTE && kind != MESSAGE_CONTINUATION &&
+         kind != MESSAGE_INFO) ||
         size > MOST_MESSAGE || !copy_bytes(s, data, s->message, size))
         return false;
     if (kind == MESSAGE_ATTRIBUTE)
         return read_attribute(s, size);
+    if (kind == MESSAGE_INFO) {
+        const size_t skip = s->message[1] & 1 ? 4 : 2;
+        if (size < skip + 8 ||
+            !snow_add_u64(s->base, number(s->message + skip, 8), &s->heap))
+            s->heap = 0;
+        return false;
+    }
     uint64_t next;
     if (size >= 16 && snow_add_u64(s->base, number(s->message, 8), &next)) {
         /* Version 2 has "OCHK" before the messages and a sum behind them. */
         const uint64_t all = number(s->message + 8, 8), extra = s->version2;
         add_block(s, next + 4 * extra, all > 8 * extra ? all - 8 * extra : 0);
+    }
+    return false;
+}
+
+/* Looks for the name in a block of the heap, and for the head of an attribute,
+ * of 8 or 9 bytes, before it. */
+static bool search_block(search *s, uint64_t at, uint64_t size) {
+    unsigned char part[MOST_MESSAGE];
+    const size_t letters = strlen(s->name) + 1;
+    for (uint64_t done = 0; done < size; done += sizeof part / 2) {
+        const uint64_t left = size - done;
+        const size_t got = snow_seekable_read(
+            s->bytes, at + done, part, left < sizeof part ? left : sizeof part);
+        for (size_t i = 9; i + letters <= got; i++) {
+            if (memcmp(part + i, s->name, letters) != 0)
+                continue;
+            for (size_t head = 8; head <= 9; head++) {
+                const size_t bytes =
+                    snow_seekable_read(s->bytes, at + done + i - head,
+                                       s->message, sizeof s->message);
+                if (read_attribute(s, bytes))
+                    return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* The blocks of dense storage without filters, first ones first. */
+static bool search_heap(search *s) {
+    unsigned char head[142], entry[8];
+    uint64_t root, done = 0;
+    if (!s->heap || !copy_bytes(s, s->heap, head, sizeof head) ||
+        memcmp(head, "FRHP", 4) != 0 || number(head + 7, 2) ||
+        !snow_add_u64(s->base, number(head + 132, 8), &root))
+        return false;
+    const uint64_t width = number(head + 110, 2), rows = number(head + 140, 2);
+    uint64_t size = number(head + 112, 8);
+    if (!rows)
+        return search_block(s, root, size < MOST_DENSE ? size : MOST_DENSE);
+    uint64_t at = root + 13 + (number(head + 128, 2) + 7) / 8;
+    for (uint64_t n = 0; n < rows * width && done < MOST_DENSE; n++, at += 8) {
+        uint64_t to;
+        if (n >= 2 * width && n % width == 0)
+            size *= 2;
+        if (!copy_bytes(s, at, entry, sizeof entry) || size > MOST_DENSE ||
+            size < 64 || !snow_add_u64(s->base, number(entry, 8), &to))
+            return false;
+        done += size;
+        if (number(entry, 8) != UINT64_MAX && search_block(s, to, size))
+            return true;
     }
     return false;
 }
@@ -173,7 +244,7 @@ static bool find(search *s, uint64_t header) {
         for (uint64_t at = s->blocks[i].at; at + 4 <= s->blocks[i].end;)
             if (read_message(s, &at))
                 return true;
-    return false;
+    return search_heap(s);
 }
 
 /* Variable length: by our own parser. */

@@ -297,22 +297,17 @@ static size_t read_at(void *user, uint64_t at, void *bytes, size_t size) {
 static snow_status read_array(void *user, const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
     netcdf_job *job = user;
-    snow_source *source = job->source, *held = NULL;
-    const void *bytes = snow_seekable_held(job->bytes);
+    snow_source *again = NULL;
     const snow_bytes_behind behind = {read_at, job->bytes,
                                       snow_seekable_size(job->bytes)};
-    if (bytes)
-        SNOW_TRY(snow_source_open_memory(snow_source_context(source),
-                                         snow_source_name(source), bytes,
-                                         (size_t)behind.size, &held));
-    else if (job->done)
-        SNOW_TRY(snow_source_open_with(snow_source_context(source),
-                                       snow_source_name(source), &behind,
-                                       &held));
+    if (job->done || snow_seekable_held(job->bytes))
+        SNOW_TRY(snow_source_open_with(snow_source_context(job->source),
+                                       snow_source_name(job->source), &behind,
+                                       &again));
     job->done |= out != NULL;
-    snow_status status =
-        snow_array_read(held ? held : source, options, &job->array, info, out);
-    snow_source_close(held);
+    snow_status status = snow_array_read(again ? again : job->source, options,
+                                         &job->array, info, out);
+    snow_source_close(again);
     return status;
 }
 
