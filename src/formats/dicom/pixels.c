@@ -6,6 +6,7 @@
  * like a code stream. */
 #include "formats/dicom/dicom.h"
 
+#include "base/minmax.h"
 #include "base/module.h"
 #include "formats/dicom/gdcm_bridge.h"
 
@@ -273,6 +274,13 @@ static snow_status unpack(dicom_reader *reader, const dicom_image *image,
     words->stored = frame.stored;
     words->high = frame.high;
     words->is_signed = frame.is_signed;
+    if (image->is_signed && !frame.is_signed) {
+        /* The stream has but the bits; the header says that they have a sign,
+         * as pydicom takes it. */
+        words->stored = SNOW_MIN(frame.stored, image->stored);
+        words->high = frame.high - frame.stored + words->stored;
+        words->is_signed = true;
+    }
     words->planes = frame.planes;
     return SNOW_STATUS_OK;
 }
