@@ -365,6 +365,36 @@ static snow_status read_stack(stack *s, snow_folder *files,
     return SNOW_STATUS_OK;
 }
 
+static bool holds_any(const stack *s, const snow_folder *files) {
+    for (size_t i = 0; i < files->count; i++)
+        if (slice_format(s, files->paths[i]))
+            return true;
+    return false;
+}
+
+/* A folder without slices may hold folders of DICOM files, as disks do, whose
+ * files then take the place of its own. */
+static snow_status look_below(const stack *s, const char *path,
+                              snow_folder *files, bool *found) {
+    char name[256];
+    snow_folder below;
+    if (!snow_folder_below(path, name, sizeof name))
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_folder_list_below(s->context, path, &below));
+    *found = snow_dicom_among(s->context, &below, s->find);
+    if (*found) {
+        const snow_folder own = *files;
+        *files = below;
+        below = own;
+        snow_notify(s->context,
+                    "has no slices itself; those of the folders below it, such "
+                    "as %s, are read",
+                    name);
+    }
+    snow_folder_free(&below);
+    return SNOW_STATUS_OK;
+}
+
 snow_status snow_stack_read(snow_context *context, const char *path,
                             const snow_volume_options *options,
                             snow_format_finder *find, snow_volume_info *info,
@@ -372,8 +402,13 @@ snow_status snow_stack_read(snow_context *context, const char *path,
     snow_folder files;
     stack s = {.context = context, .find = find};
     SNOW_TRY(snow_folder_list(context, path, &files));
-    snow_status status;
-    if (snow_dicom_among(context, &files, find)) {
+    snow_status status = SNOW_STATUS_OK;
+    bool dicom = snow_dicom_among(context, &files, find);
+    if (!dicom && !holds_any(&s, &files) && snow_is_folder(context, path))
+        status = look_below(&s, path, &files, &dicom);
+    if (status != SNOW_STATUS_OK) {
+        /* the message is there */
+    } else if (dicom) {
         status = snow_dicom_read_files(context, &files, options, info, out);
     } else {
         status = choose_files(&s, path, &files);

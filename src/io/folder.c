@@ -20,6 +20,11 @@ const char *snow_path_name(const char *path) {
 /* More files than any image series has. */
 #define MOST_FILES ((size_t)1 << 24)
 
+/* Below a folder: more than any disk of images has, and few enough to be looked
+ * at one by one. */
+#define MOST_BELOW ((size_t)1 << 16)
+#define MOST_LEVELS 5
+
 /* 0: nothing, or the look-up has failed. */
 static mode_t mode_of(snow_context *context, const char *path) {
     mode_t mode = 0;
@@ -122,7 +127,29 @@ static int compare_paths(const void *a, const void *b) {
 typedef struct names {
     char *block;
     size_t used, count;
+    int levels;     /* of folders below that are listed too */
+    size_t folders; /* of them so far */
+    bool below;     /* they are listed */
 } names;
+
+static snow_status list_folder(snow_context *context, const char *folder,
+                               const char *pattern, names *all);
+
+/* Lists a folder below, whose path is the next in the block. */
+static snow_status add_below(snow_context *context, names *all) {
+    const char *path = all->block + all->used;
+    const size_t length = strlen(path);
+    char *folder = snow_allocate(context, length + 1);
+    if (!folder)
+        return SNOW_STATUS_NO_MEMORY;
+    memcpy(folder, path, length + 1);
+    all->levels--;
+    all->folders++;
+    snow_status status = list_folder(context, folder, "", all);
+    all->levels++;
+    snow_release(context, folder);
+    return status;
+}
 
 static snow_status add_name(snow_context *context, names *all,
                             const char *folder, size_t folder_length,
@@ -139,6 +166,8 @@ static snow_status add_name(snow_context *context, names *all,
     const bool dangles = snow_is_dangling(path);
     if (!dangles)
         SNOW_TRY(snow_look_at_given(context, path, &mode));
+    if (!dangles && S_ISDIR(mode) && all->levels)
+        return add_below(context, all);
     if (!dangles && !S_ISREG(mode))
         return SNOW_STATUS_OK; /* not stored: the next name overwrites it */
     all->used += folder_length + length;
@@ -149,6 +178,7 @@ static snow_status add_name(snow_context *context, names *all,
 static snow_status collect_names(snow_context *context, DIR *stream,
                                  const char *folder, size_t folder_length,
                                  const char *pattern, names *all) {
+    const size_t most = all->below ? MOST_BELOW : MOST_FILES;
     for (;;) {
         errno = 0;
         const struct dirent *entry = readdir(stream);
@@ -161,11 +191,11 @@ static snow_status collect_names(snow_context *context, DIR *stream,
             (*pattern && !fits(pattern, entry->d_name)))
             continue;
         SNOW_TRY(add_name(context, all, folder, folder_length, entry->d_name));
-        if (all->count > MOST_FILES)
+        if (all->count + all->folders > most)
             return snow_fail(
                 context, SNOW_STATUS_BAD_INPUT,
                 "has more than %zu files; give a pattern that matches fewer",
-                MOST_FILES);
+                most);
     }
 }
 
@@ -188,18 +218,28 @@ static snow_status make_list(snow_context *context, const names *all,
     return SNOW_STATUS_OK;
 }
 
-static snow_status list_at(snow_context *context, char *folder,
-                           const char *pattern, snow_folder *out) {
-    DIR *stream = opendir(*folder ? folder : ".");
-    if (!stream)
-        return snow_lookup_fail(context, *folder ? folder : ".", "listed");
+static snow_status list_folder(snow_context *context, const char *folder,
+                               const char *pattern, names *all) {
     size_t length = strlen(folder);
+    char *begin = snow_allocate(context, length + 2);
+    if (!begin)
+        return SNOW_STATUS_NO_MEMORY;
+    memcpy(begin, folder, length + 1);
+    DIR *stream = opendir(*folder ? folder : ".");
     if (length && folder[length - 1] != '/')
-        folder[length++] = '/';
-    names all = {0};
+        begin[length++] = '/';
     snow_status status =
-        collect_names(context, stream, folder, length, pattern, &all);
-    closedir(stream);
+        stream ? collect_names(context, stream, begin, length, pattern, all)
+               : snow_lookup_fail(context, *folder ? folder : ".", "listed");
+    if (stream)
+        closedir(stream);
+    snow_release(context, begin);
+    return status;
+}
+
+static snow_status list_at(snow_context *context, const char *folder,
+                           const char *pattern, names all, snow_folder *out) {
+    snow_status status = list_folder(context, folder, pattern, &all);
     if (status == SNOW_STATUS_OK)
         status = make_list(context, &all, out);
     snow_release(context, all.block);
@@ -213,14 +253,20 @@ snow_status snow_folder_list(snow_context *context, const char *path,
     bool whole = snow_is_folder(context, path);
     const char *pattern = whole ? "" : snow_path_name(path);
     size_t length = whole ? strlen(path) : (size_t)(pattern - path);
-    char *folder = snow_allocate(context, length + 2);
+    char *folder = snow_allocate(context, length + 1);
     if (!folder)
         return SNOW_STATUS_NO_MEMORY;
     memcpy(folder, path, length);
-    memset(folder + length, 0, 2);
-    snow_status status = list_at(context, folder, pattern, out);
+    folder[length] = 0;
+    snow_status status = list_at(context, folder, pattern, (names){0}, out);
     snow_release(context, folder);
     return status;
+}
+
+snow_status snow_folder_list_below(snow_context *context, const char *path,
+                                   snow_folder *out) {
+    const names all = {.levels = MOST_LEVELS, .below = true};
+    return list_at(context, path, "", all, out);
 }
 
 bool snow_folder_below(const char *path, char *name, size_t capacity) {

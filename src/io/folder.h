@@ -38,6 +38,12 @@ bool snow_is_pattern(snow_context *context, const char *path);
 snow_status snow_folder_list(snow_context *context, const char *path,
                              snow_folder *out);
 
+/* The files of the folders below a folder, with those in it: disks have
+ * STUDY/SERIES/IM1. At most five levels, in the order of their paths. Errors:
+ * as above, and SNOW_STATUS_BAD_INPUT for too many files. */
+snow_status snow_folder_list_below(snow_context *context, const char *path,
+                                   snow_folder *out);
+
 /* The name of the first folder in a folder, in the same order, for a message;
  * false if there is none, or none whose name fits. */
 bool snow_folder_below(const char *path, char *name, size_t capacity);
