@@ -163,6 +163,97 @@ static void hounsfield_units_are_those_of_a_ct(void **state) {
     }
 }
 
+/* Siemens' header of named texts, in its second version. */
+static void put_csa(file *f, const char *normal) {
+    static const char *const names[] = {"NumberOfImagesInMosaic",
+                                        "SliceNormalVector"};
+    file csa = {.size = 0};
+    put(&csa, "SV10\4\3\2\1\2\0\0\0\115\0\0\0", 16);
+    for (int n = 0; n < 2; n++) {
+        char name[64] = "";
+        const char *values[3] = {n ? "0" : "3", "0 ", normal};
+        memcpy(name, names[n], strlen(names[n]));
+        put(&csa, name, 64);
+        put_number(&csa, n ? 3 : 1, 4);
+        put(&csa, "FD\0", 4);
+        put_number(&csa, 4, 4);
+        put_number(&csa, n ? 3 : 1, 4);
+        put_number(&csa, 77, 4);
+        for (int i = 0; i < (n ? 3 : 1); i++) {
+            const size_t size = strlen(values[i]);
+            for (int k = 0; k < 4; k++)
+                put_number(&csa, (uint32_t)size, 4);
+            put(&csa, values[i], size);
+            put_number(&csa, 0, (int)(4 - size % 4) % 4);
+        }
+    }
+    text(f, 0x00290011, "LO", "SIEMENS CSA HEADER");
+    element(f, 0x00291110, "OB", csa.bytes, csa.size);
+}
+
+/* Three tiles of 2 x 1 voxels in a sheet of 4 x 2, and the numbers that say so;
+ * values are 0, 1, ... in the order of the sheet. */
+static void a_mosaic_is_its_tiles(void **state) {
+    static const struct {
+        const char *normal;
+        unsigned number;
+        uint16_t values[6];
+        double bottom; /* z of the first slice */
+    } rows[] = {{NULL, 3, {0, 1, 2, 3, 4, 5}, 0},
+                {"1", 3, {0, 1, 2, 3, 4, 5}, 0},
+                {"-1", 0, {4, 5, 2, 3, 0, 1}, -6}};
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        file f;
+        unsigned char words[16] = {0};
+        begin(&f, explicit_little, 0);
+        text(&f, 0x00080008, "CS", "ORIGINAL\\PRIMARY\\M\\MOSAIC");
+        text(&f, 0x00180088, "DS", "3");
+        if (rows[n].number) {
+            text(&f, 0x00190010, "LO", "SIEMENS MR HEADER");
+            number(&f, 0x0019100a, rows[n].number);
+        }
+        if (rows[n].normal)
+            put_csa(&f, rows[n].normal);
+        for (unsigned i = 0; i < 8; i++)
+            words[2 * i] = (unsigned char)(i < 6 ? i : 9);
+        element(&f, 0x7fe00010, "OW", words, sizeof words);
+        snow_volume *volume =
+            support_opened(*state, write_file(*state, &f), NULL);
+        const snow_volume_info *info = snow_volume_get_info(volume);
+        assert_int_equal(info->dims[0], 2);
+        assert_int_equal(info->dims[1], 1);
+        assert_int_equal(info->dims[2], 3);
+        assert_true(info->matrix[0][3] == -1 && info->matrix[1][3] == -0.5);
+        assert_true(info->matrix[2][3] == rows[n].bottom);
+        assert_true(info->matrix[2][2] == 3);
+        assert_memory_equal(snow_volume_voxels(volume), rows[n].values,
+                            sizeof rows[n].values);
+        assert_int_equal(support_warned(*state), 1); /* the first has none */
+        snow_volume_close(volume);
+    }
+    file f;
+    begin(&f, explicit_little, 0);
+    text(&f, 0x00080008, "CS", "ORIGINAL\\PRIMARY\\M\\MOSAIC");
+    element(&f, 0x7fe00010, "OW", f.bytes, 16);
+    refuse(*state, &f, "without the number of its slices");
+}
+
+/* Programs that remove names may give all images one UID. */
+static void images_of_one_uid_are_told_apart(void **state) {
+    support_files *files = *state;
+    static const char *const names[] = {"0", "1", "2", "3"};
+    for (unsigned z = 0; z < 4; z++) {
+        file f;
+        slice(&f, z % 3, 10 * (z % 3)); /* the last is a copy */
+        memcpy(found(&f, "\x08\0\x18\0UI") + 8, "1.9.7", 5);
+        support_write(files, names[z], f.bytes, f.size);
+    }
+    snow_volume *volume = support_opened(files, support_path(files, "1"), NULL);
+    assert_int_equal(snow_volume_get_info(volume)->dims[2], 3);
+    assert_int_equal(((const uint16_t *)snow_volume_voxels(volume))[16], 20);
+    snow_volume_close(volume);
+}
+
 /* Without numbers of their own files are not copies, but the given one is. */
 static void a_slice_without_a_number_is_there_once(void **state) {
     support_files *files = *state;
@@ -438,6 +529,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         SUPPORT_TEST(a_file_says_how_to_show_it),
         SUPPORT_TEST(hounsfield_units_are_those_of_a_ct),
+        SUPPORT_TEST(a_mosaic_is_its_tiles),
+        SUPPORT_TEST(images_of_one_uid_are_told_apart),
         SUPPORT_TEST(a_slice_without_a_number_is_there_once),
         SUPPORT_TEST(a_file_cut_anywhere_is_refused),
         SUPPORT_TEST(lengths_that_lie_cost_no_memory),

@@ -18,7 +18,7 @@ import dicom_sets
 from dicom_sets import (RAS, ExplicitVRBigEndian, ExplicitVRLittleEndian,
                         ImplicitVRLittleEndian, blank, fill, holds, packed,
                         pydicom, run_lengths, write)
-from pydicom.uid import JPEGBaseline8Bit
+from pydicom.uid import JPEG2000Lossless, JPEGBaseline8Bit
 
 # Without GDCM what is packed by JPEG's kinds is refused, and nothing else.
 GDCM = oracle.library("gdcm")
@@ -182,6 +182,17 @@ oracle.refuse("above", "has no slices itself, only folders such as s9; name one 
               "of them")
 shutil.copytree("mixed", "above/s9", dirs_exist_ok=True)
 oracle.expect("above/s9", small, wanted, name="a folder in a folder")
+# A disk: its index, and two levels of folders with half of the slices each.
+os.mkdir("disk")
+write("disk/DICOMDIR", directory)
+for z, position in enumerate(rising):
+    os.makedirs(f"disk/A/S{z % 2}", exist_ok=True)
+    write(f"disk/A/S{z % 2}/IM{z}", image(small[z], position))
+for path, first in (("above", "s9"), ("disk", "A")): # which info lists
+    done = oracle.tool("convert", "-y", path, "-o", "below.nrrd")
+    oracle.expect("below.nrrd", small, wanted, name=f"the folders below {path}")
+    if f"those of the folders below it, such as {first}" not in done.stderr:
+        oracle.fail(path, done.stderr)
 os.mkdir("empty")
 oracle.refuse("empty", "names no slices")
 first = f"mixed/{names[0]}"
@@ -272,6 +283,32 @@ oracle.says("a file twice", "same",
             "1 file with the same image as another file")
 add("same", small[5:6], [(0, 0, 1)], ["other.dcm"])
 oracle.refuse("same", "2 images at the position of")
+# One UID for all, as of a program that removes names; two slices are alike.
+alike = small.copy()
+alike[3] = alike[4]
+series("same", alike, rising, SOPInstanceUID="1.2.7")
+shutil.copy("same/s_2.dcm", "same/again.dcm")
+oracle.expect("same", alike, wanted, name="one UID for all")
+oracle.says("one UID for all", "same", "8 files have the SOP instance UID of")
+oracle.expect("same/s_2.dcm", alike, wanted, name="one of those")
+series("same", alike[3:5], rising[3:4] * 2, SOPInstanceUID="1.2.7",
+       AcquisitionTime=Each(["1200", "1201"]))
+oracle.tells("same", times=2)
+# A series UID for each.
+for count, other in ((5, {}), (5, {"StudyInstanceUID": Each("1.2 1.2 1.2 1.2 "
+                                                           "1.3".split())})):
+    series("lone", small[:count], rising[:count], series=Each(
+        f"1.2.{z}" for z in range(count)), **{"StudyInstanceUID": "1.2", **other})
+    if other:
+        oracle.tells("lone", dims=[5, 6, 1])
+    else:
+        oracle.expect("lone", small[:count], wanted, name="a series for each")
+        oracle.says("a series for each", "lone", "a series UID of its own")
+oracle.expect("lone", small[2:3], grid((0.5, 0.75, 9), rising[2]),
+              ["--series", "1.2.2"])
+series("lone", small[:3], rising[:1] * 3, InstanceNumber=Each([1, 2, 3]))
+oracle.says("images that only numbers distinguish", "lone",
+            "all its 3 images lie at one position")
 
 # --- several series, times ----------------------------------------------------
 
@@ -366,6 +403,25 @@ for kind in ("u1", "u2", "i2") if gdcmconv else ():
             oracle.expect("packed", voxels, wanted, name=f"{kind} {way}")
         else:
             oracle.refuse("packed", UNBUILT)
+
+# JPEG 2000 that calls its bits unsigned while the header gives them a sign: a real
+# one, as pydicom reads it, and ours, which has 16 bits for 12 stored ones.
+try:
+    from PIL import Image
+except ImportError:
+    Image = None
+codec = pydicom.data.get_testdata_file("J2K_pixelrep_mismatch.dcm", download=False)
+mended = {codec: opened(codec).pixel_array} if codec and GDCM and Image else {}
+if GDCM and Image:
+    mended["signs.dcm"] = np.arange(-2048, 2048, 2, "i2").reshape(32, 64)
+    stream = io.BytesIO()
+    Image.fromarray(mended["signs.dcm"].view("u2") & 4095).save(
+        stream, "JPEG2000", irreversible=False, no_jp2=True)
+    write("signs.dcm", packed(image(mended["signs.dcm"], BitsStored=12),
+                              [stream.getvalue()], JPEG2000Lossless))
+for path, wanted_values in mended.items():
+    if not np.array_equal(oracle.voxels_of(path)[0][0], wanted_values):
+        oracle.fail(path, "its bits lack their sign")
 
 # --- several frames -----------------------------------------------------------
 

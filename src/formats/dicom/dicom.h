@@ -1,12 +1,14 @@
 /* formats/dicom/dicom.h - the parts of the DICOM reader.
  *
  *   files   files.c    which files belong together
+ *           copies.c   those of one image
  *     |
  *   parse   parse.c    a file's elements, values.c their values
  *           deflated.c the bytes of deflated ones
  *     |
  *   header  header.c   a file's image, and its frames
  *           sizes.c    whether it agrees with the pixels
+ *           mosaic.c   slices that are tiles of one frame
  *     |
  *   series  groups.c   which frames may be slices of one volume
  *           series.c   their order and positions
@@ -56,10 +58,12 @@ typedef enum dicom_segments {
 /* One file with an image, as described by its header. */
 typedef struct dicom_image {
     char *path; /* in the list of files; NULL for the file that was given */
-    char series[65], instance[65], photometric[17], modality[17],
+    char study[65], series[65], instance[65], photometric[17], modality[17],
         rescale_type[17];
+    char clock[64];                     /* when it was acquired and made */
     char patient[256], description[65]; /* UTF-8; "" if missing */
     int64_t columns, rows, frames;
+    int64_t slices; /* frames, or tiles of a mosaic */
     int64_t series_number;
     int samples, allocated, stored, high;
     dicom_segments segments;
@@ -67,12 +71,26 @@ typedef struct dicom_image {
     bool is_signed, planes; /* samples of a pixel are not interleaved */
     bool pads;              /* stored values within padding are not data */
     double padding[2];
+    int tiles; /* a side of a mosaic; 0: none; below 0: they are not known */
+    bool has_normal, apart_guessed; /* of a mosaic's slices, as are these */
+    double normal[3], apart;        /* mm; 0: not given */
+    size_t first;                   /* its frame in the order of reading */
+    uint64_t sum;                   /* of its pixels; 0: not computed */
 } dicom_image;
+
+/* The pixels of a slice: of a mosaic those of a tile. */
+static inline int64_t snow_dicom_columns(const dicom_image *image) {
+    return image->tiles > 1 ? image->columns / image->tiles : image->columns;
+}
+
+static inline int64_t snow_dicom_rows(const dicom_image *image) {
+    return image->tiles > 1 ? image->rows / image->tiles : image->rows;
+}
 
 /* An image of a slice: a file, or a part of one. */
 typedef struct dicom_frame {
     const dicom_image *image;
-    int64_t number; /* within its file, from 0 */
+    int64_t number; /* within its file, from 0; of a mosaic the tile */
     bool placed;    /* the next three are given */
     double position[3], row[3],
         column[3];   /* centre of the first pixel; along a row, down a column */
@@ -148,7 +166,8 @@ typedef struct dicom_reader {
     bool packed;          /* the pixels are fragments */
     bool has_pixels;      /* if they were not requested: they follow */
     bool cut;             /* but the file ends before they do */
-    uint32_t pixel_bytes; /* then, for plain ones */
+    uint64_t pixels_at;   /* then, within the store */
+    uint32_t pixel_bytes; /* for plain ones */
     const dicom_element *frames, *shared; /* functional groups, or NULL */
     size_t last_item; /* groups of the last requested frame; 0: none */
     int64_t last_frame;
@@ -242,6 +261,11 @@ typedef struct dicom_group {
  * groups. */
 size_t snow_dicom_group(dicom_frame *frames, size_t count, dicom_group *groups);
 
+/* Whether frames, one of each series, are the slices of one volume, since they
+ * lie evenly behind one another and differ in their series only, as some
+ * programs that remove names leave it; a note says so. */
+bool snow_dicom_join(snow_context *context, dicom_frame *frames, size_t count);
+
 /* Slice z of the volume lies between two of its positions. */
 typedef struct dicom_slice {
     size_t low, high; /* positions */
@@ -322,6 +346,20 @@ void snow_dicom_read_frame(dicom_reader *reader, const dicom_image *image,
  * that of compressed ones shows only when they are looked through. */
 snow_status snow_dicom_find_cut(const dicom_reader *reader,
                                 const dicom_image *image, bool *cut);
+
+/* --- mosaic.c ------------------------------------------------------------- */
+
+/* Finds whether the frame of an image is a mosaic of Siemens', and sets its
+ * slices. Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_dicom_read_mosaic(dicom_reader *reader, dicom_image *image);
+
+/* Refuses a mosaic whose tiles are not known: SNOW_STATUS_BAD_INPUT; warns
+ * where their order is not. */
+snow_status snow_dicom_check_mosaic(snow_context *context,
+                                    const dicom_frame *frame);
+
+/* Moves a slice of a mosaic to its own position. */
+void snow_dicom_place_tile(const dicom_image *image, dicom_frame *frame);
 
 /* --- sizes.c -------------------------------------------------------------- */
 
@@ -426,6 +464,16 @@ snow_status snow_dicom_read_stack(const dicom_input *input,
                                   const dicom_stack *stack,
                                   const snow_volume_options *options,
                                   snow_volume_info *info, snow_volume **out);
+
+/* --- copies.c ------------------------------------------------------------- */
+
+/* Whether the image of an open reader is the same as another with its SOP
+ * instance UID, whose first frame is known.  Errors: those of reading the
+ * other's file again. */
+snow_status snow_dicom_is_copy(const dicom_input *given, dicom_reader *reader,
+                               snow_seekable *store, dicom_image *image,
+                               const dicom_frame *known, dicom_image *other,
+                               bool *same);
 
 /* --- segments.c ----------------------------------------------------------- */
 

@@ -16,6 +16,15 @@
  * mark. */
 #define HEAD_BYTES 132
 
+/* DICOMDIR, which lists the files of a disk, is no image. */
+static bool is_directory(const unsigned char *bytes, size_t size) {
+    static const char class_of[] = "1.2.840.10008.1.3.10";
+    for (size_t at = HEAD_BYTES; at + sizeof class_of <= size && at < 512; at++)
+        if (!memcmp(bytes + at, class_of, sizeof class_of - 1))
+            return true;
+    return false;
+}
+
 /* Opens a file and reads its first bytes; *got is 0 if there are none. */
 static snow_status probe(snow_context *context, const char *path, bool *is,
                          size_t *got) {
@@ -25,7 +34,8 @@ static snow_status probe(snow_context *context, const char *path, bool *is,
     *got = 0;
     SNOW_TRY(snow_source_open(context, path, &source));
     snow_status status = snow_source_peek(source, bytes, sizeof bytes, got);
-    *is = status == SNOW_STATUS_OK && snow_dicom_probe(bytes, *got);
+    *is = status == SNOW_STATUS_OK && snow_dicom_probe(bytes, *got) &&
+          !is_directory(bytes, *got);
     snow_source_close(source);
     return status;
 }
@@ -52,8 +62,10 @@ typedef struct collection {
     size_t image_count;
     dicom_frame *frames;
     size_t frame_count;
-    bool gaps;         /* slices may be missing or cut */
-    size_t copies;     /* files with the same image as another */
+    snow_seekable *store; /* of the given file; NULL: none */
+    bool gaps;            /* slices may be missing or cut */
+    size_t copies;        /* files with the same image as another */
+    size_t twins;         /* files with its UID, but another image */
     size_t scraps;     /* files too short for DICOM that may have been slices */
     const char *scrap; /* the first of them */
 } collection;
@@ -65,20 +77,40 @@ static void free_collection(collection *c) {
     snow_release(c->context, c->frames);
 }
 
+/* Whether a file before has the same image; UIDs are not always unique. */
+static snow_status find_copy(collection *c, dicom_reader *reader,
+                             snow_seekable *store, dicom_image *image,
+                             bool *found) {
+    const dicom_input given = {c->context, c->store};
+    bool twin = false;
+    *found = false;
+    for (size_t i = 0; i < c->image_count && *image->instance && !*found; i++) {
+        dicom_image *other = c->images[i];
+        if (strcmp(other->instance, image->instance) != 0)
+            continue;
+        twin = true;
+        SNOW_TRY(snow_dicom_is_copy(&given, reader, store, image,
+                                    &c->frames[other->first], other, found));
+    }
+    c->copies += *found;
+    c->twins += twin && !*found;
+    return SNOW_STATUS_OK;
+}
+
 /* If `series` is given, images of others are left out. */
-static snow_status add_image(collection *c, dicom_reader *reader, char *path,
+static snow_status add_image(collection *c, dicom_reader *reader,
+                             snow_seekable *store, char *path,
                              const char *series) {
+    bool copy;
     dicom_image image;
     if (reader->cut && (!c->gaps || !path))
         return SNOW_STATUS_BAD_INPUT; /* the message is there */
     SNOW_TRY(snow_dicom_read_image(c->context, reader, &image));
     if (!image.rows || (series && strcmp(image.series, series) != 0))
         return SNOW_STATUS_OK;
-    for (size_t i = 0; i < c->image_count && *image.instance; i++)
-        if (!strcmp(c->images[i]->instance, image.instance)) {
-            c->copies++;
-            return SNOW_STATUS_OK;
-        }
+    SNOW_TRY(find_copy(c, reader, store, &image, &copy));
+    if (copy)
+        return SNOW_STATUS_OK;
     SNOW_TRY(SNOW_RESERVE(c->context, c->images, c->image_count,
                           c->image_count + 1));
     dicom_image *kept = snow_allocate(c->context, sizeof *kept);
@@ -88,10 +120,10 @@ static snow_status add_image(collection *c, dicom_reader *reader, char *path,
     kept->path = path;
     c->images[c->image_count++] = kept;
     bool lost = reader->cut;
-    size_t first = c->frame_count;
+    size_t first = kept->first = c->frame_count;
     if (c->gaps && path)
         SNOW_TRY(snow_dicom_find_cut(reader, kept, &lost));
-    for (int64_t n = 0; n < kept->frames; n++) {
+    for (int64_t n = 0; n < kept->slices; n++) {
         SNOW_TRY(SNOW_RESERVE(c->context, c->frames, c->frame_count,
                               c->frame_count + 1));
         snow_dicom_read_frame(reader, kept, n, &c->frames[c->frame_count++]);
@@ -105,7 +137,7 @@ static snow_status add_store(collection *c, snow_seekable *store, char *path,
                              const char *series) {
     dicom_reader reader;
     SNOW_TRY(snow_dicom_open(c->context, store, NULL, &reader));
-    snow_status status = add_image(c, &reader, path, series);
+    snow_status status = add_image(c, &reader, store, path, series);
     snow_dicom_close(&reader);
     return status;
 }
@@ -164,6 +196,12 @@ static snow_status add_file(collection *c, char *path, const char *series) {
 }
 
 static void warn_scraps(const collection *c) {
+    if (c->twins)
+        snow_notify(c->context,
+                    "%zu file%s the SOP instance UID of another but not its "
+                    "image, as some programs that remove names leave it; all "
+                    "are used",
+                    c->twins, c->twins > 1 ? "s have" : " has");
     if (c->scraps)
         snow_notify(
             c->context,
@@ -200,9 +238,9 @@ static void list_series(const choice *all, size_t taken, char *out,
         used += (size_t)snprintf(
             out + used, capacity - used, "%s%zu: %s%s%lldx%lld, %zu image%s%s",
             i ? "; " : "", i, image->modality, *image->modality ? " " : "",
-            (long long)image->columns, (long long)image->rows,
-            all->groups[i].count, all->groups[i].count > 1 ? "s" : "",
-            i == taken ? " (taken)" : "");
+            (long long)snow_dicom_columns(image),
+            (long long)snow_dicom_rows(image), all->groups[i].count,
+            all->groups[i].count > 1 ? "s" : "", i == taken ? " (taken)" : "");
     }
 }
 
@@ -266,6 +304,11 @@ static snow_status read_chosen(collection *c, snow_seekable *store,
     if (!all.groups)
         return SNOW_STATUS_NO_MEMORY;
     all.count = snow_dicom_group(c->frames, c->frame_count, all.groups);
+    if (!options->series && all.count == c->frame_count &&
+        snow_dicom_join(c->context, c->frames, all.count)) {
+        all.groups[0].count = all.count;
+        all.count = 1;
+    }
     snow_status status = choose_group(&all, options->series, &taken);
     dicom_stack stack;
     if (status == SNOW_STATUS_OK)
@@ -456,6 +499,7 @@ static snow_status read_dicom(snow_source *source,
     collection c = {.context = context, .gaps = options->allow_gaps};
     snow_seekable *store;
     SNOW_TRY(snow_seekable_open(source, &store));
+    c.store = store;
     bool done = false;
     snow_status status = add_store(&c, store, NULL, NULL);
     if (status == SNOW_STATUS_OK && !c.frame_count)

@@ -8,14 +8,15 @@
 /* Cosines are written with six digits, or fewer. */
 #define SAME_COSINE 1e-3
 
-static int compare_images(const dicom_image *a, const dicom_image *b) {
-    if (a->series_number != b->series_number)
-        return a->series_number < b->series_number ? -1 : 1;
-    int by = strcmp(a->series, b->series);
-    if (!by)
-        by = snow_dicom_order((double)a->columns, (double)b->columns);
+/* By what their pixels are. */
+static int compare_kinds(const dicom_image *a, const dicom_image *b) {
+    int by = snow_dicom_order((double)a->columns, (double)b->columns);
     if (!by)
         by = snow_dicom_order((double)a->rows, (double)b->rows);
+    if (!by)
+        by = a->tiles - b->tiles;
+    if (!by && a->tiles > 1)
+        by = snow_dicom_order((double)a->slices, (double)b->slices);
     if (!by)
         by = a->samples - b->samples;
     if (!by)
@@ -29,11 +30,16 @@ static int compare_images(const dicom_image *a, const dicom_image *b) {
     return by ? by : strcmp(a->photometric, b->photometric);
 }
 
-/* 0 if two frames may be slices of one volume. */
-static int compare_frames(const dicom_frame *a, const dicom_frame *b) {
-    int by = a->image == b->image ? 0 : compare_images(a->image, b->image);
-    if (!by)
-        by = b->placed - a->placed;
+static int compare_images(const dicom_image *a, const dicom_image *b) {
+    if (a->series_number != b->series_number)
+        return a->series_number < b->series_number ? -1 : 1;
+    int by = strcmp(a->series, b->series);
+    return by ? by : compare_kinds(a, b);
+}
+
+/* By their plane. */
+static int compare_planes(const dicom_frame *a, const dicom_frame *b) {
+    int by = b->placed - a->placed;
     for (int i = 0; i < 3 && !by && a->placed; i++) {
         /* Numbers that differ only by rounding or printing are equal. */
         by = fabs(a->row[i] - b->row[i]) <= SAME_COSINE
@@ -49,6 +55,24 @@ static int compare_frames(const dicom_frame *a, const dicom_frame *b) {
                  ? 0
                  : snow_dicom_order(a->pixel[i], b->pixel[i]);
     return by;
+}
+
+/* 0 if two frames may be slices of one volume. */
+static int compare_frames(const dicom_frame *a, const dicom_frame *b) {
+    int by = a->image == b->image ? 0 : compare_images(a->image, b->image);
+    return by ? by : compare_planes(a, b);
+}
+
+/* Whether frames are alike but for their series. */
+static bool are_alike(const dicom_frame *frames, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (!frames[i].placed || !*frames[i].image->study ||
+            frames[i].image->segments || frames[i].image->frames != 1 ||
+            strcmp(frames[i].image->study, frames->image->study) != 0 ||
+            (i && compare_kinds(frames[i].image, frames->image)) ||
+            compare_planes(frames, &frames[i]))
+            return false;
+    return true;
 }
 
 /* By their files, if nothing else distinguishes them. */
@@ -90,4 +114,28 @@ size_t snow_dicom_group(dicom_frame *frames, size_t count,
         first = end;
     }
     return made;
+}
+
+/* The fewest images of a series each that are taken for slices. */
+#define LEAST_JOINED 3
+
+bool snow_dicom_join(snow_context *context, dicom_frame *frames, size_t count) {
+    dicom_stack stack;
+    if (count < LEAST_JOINED || !are_alike(frames, count))
+        return false;
+    bool joined = snow_dicom_stack(context, frames, count, false, &stack) ==
+                  SNOW_STATUS_OK;
+    if (joined) {
+        joined = stack.times == 1 && !stack.slices;
+        snow_dicom_stack_free(&stack);
+    }
+    qsort(frames, count, sizeof *frames, by_image);
+    if (joined)
+        snow_notify(context,
+                    "each of its %zu images has a series UID of its own, as "
+                    "some programs that remove names leave it; they lie evenly "
+                    "behind one another and are taken for one series; --series "
+                    "takes one of them",
+                    count);
+    return joined;
 }

@@ -244,17 +244,21 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
         image.whole = (unsigned)number(reader, 0x0062000e, SHORTS, 255);
     double series = number(reader, 0x00200011, TEXT, 0);
     image.series_number = fabs(series) < 1e15 ? (int64_t)series : 0;
+    snow_dicom_text(reader, 0x0020000d, image.study, sizeof image.study);
     snow_dicom_text(reader, 0x0020000e, image.series, sizeof image.series);
     snow_dicom_text(reader, 0x00080018, image.instance, sizeof image.instance);
     snow_dicom_text(reader, 0x00280004, image.photometric,
                     sizeof image.photometric);
     snow_dicom_text(reader, 0x00080060, image.modality, sizeof image.modality);
+    snow_dicom_text(reader, 0x00080032, image.clock, 32);
+    snow_dicom_text(reader, 0x00080033, image.clock + strlen(image.clock), 32);
     words(reader, 0x00100010, image.patient, sizeof image.patient);
     words(reader, 0x0008103e, image.description, sizeof image.description);
     snow_dicom_text(reader, 0x00281054, image.rescale_type,
                     sizeof image.rescale_type);
     read_padding(reader, &image);
     SNOW_TRY(snow_dicom_check_sizes(context, reader, &image));
+    SNOW_TRY(snow_dicom_read_mosaic(reader, &image));
     *out = image;
     return SNOW_STATUS_OK;
 }
@@ -422,6 +426,7 @@ void snow_dicom_read_frame(dicom_reader *reader, const dicom_image *image,
     numbers(reader, &thickness_field, frame_number, &frame.thickness, 1);
     read_place(reader, image, &frame);
     read_pixel(reader, &frame);
+    snow_dicom_place_tile(image, &frame);
     read_scale(reader, image, &frame);
     read_window(reader, image, &frame);
     for (int i = 0; i < DICOM_KEYS; i++)

@@ -347,6 +347,7 @@ static snow_status walk_set(walk *w, coding how, uint64_t end, int depth) {
             w->reader->has_pixels = true;
             w->reader->packed = h.length == UNDEFINED;
             w->reader->pixel_bytes = w->reader->packed ? 0 : h.length;
+            w->reader->pixels_at = w->at;
             snow_status status =
                 w->reader->packed ? SNOW_STATUS_OK : check_length(w, &h);
             w->reader->cut = status == SNOW_STATUS_BAD_INPUT;

@@ -32,6 +32,7 @@ typedef struct decoder {
     dicom_palette palette; /* of the open file */
     unsigned char *bytes;  /* of a frame */
     dicom_words words;
+    const dicom_image *held; /* the mosaic whose frame it is; NULL: none */
     const snow_region *window;
     int64_t channel;
     bool scales; /* each frame has its own slope and intercept */
@@ -141,14 +142,22 @@ static snow_status take_frame(decoder *d, const dicom_frame *frame,
         return SNOW_STATUS_OK;
     /* Errors name the file that contains the frame. */
     const char *path = frame->image->path;
-    snow_status status = open_image(d, frame->image);
-    if (status == SNOW_STATUS_OK)
-        status = snow_dicom_read_words(&d->reader, frame->image, frame->number,
-                                       d->bytes, &d->words);
+    const dicom_image *image = frame->image;
+    const bool mosaic = image->tiles > 1;
+    const bool held = d->held == image;
+    d->held = NULL;
+    snow_status status = open_image(d, image);
+    if (status == SNOW_STATUS_OK && !held)
+        status = snow_dicom_read_words(
+            &d->reader, image, mosaic ? 0 : frame->number, d->bytes, &d->words);
     if (status != SNOW_STATUS_OK && path)
         snow_fail_in_file(d->input->context, status, path);
     SNOW_TRY(status);
-    const dicom_image *image = frame->image;
+    d->held = mosaic ? image : NULL;
+    const int64_t tile = mosaic ? frame->number : 0;
+    const int64_t tiles = mosaic ? image->tiles : 1;
+    const int64_t left = tile % tiles * snow_dicom_columns(image);
+    const int64_t top = tile / tiles * snow_dicom_rows(image);
     size_t size = (size_t)d->words.size;
     size_t samples = (size_t)image->samples, columns = (size_t)image->columns;
     size_t area = columns * (size_t)image->rows;
@@ -156,8 +165,8 @@ static snow_status take_frame(decoder *d, const dicom_frame *frame,
     size_t apart = d->words.planes ? area * size : size;
     const unsigned char *at = d->bytes + (size_t)d->channel * apart;
     for (int64_t y = 0; y < w->count[1]; y++) {
-        size_t first =
-            (size_t)(w->first[1] + y) * columns + (size_t)w->first[0];
+        size_t first = (size_t)(top + w->first[1] + y) * columns +
+                       (size_t)(left + w->first[0]);
         take_row(d, frame, at + first * step, step, out + y * w->count[0]);
     }
     return SNOW_STATUS_OK;
@@ -370,6 +379,15 @@ static snow_status warn_lost(snow_context *context, const dicom_stack *stack) {
     return SNOW_STATUS_OK;
 }
 
+/* Whether images at one position have no time, echo or acquisition. */
+static bool are_only_numbered(const dicom_stack *stack) {
+    for (size_t i = 1; i < stack->times; i++)
+        for (int key = 0; key < DICOM_KEY_INSTANCE; key++)
+            if (stack->frames[i].keys[key] != stack->frames[0].keys[key])
+                return false;
+    return true;
+}
+
 /* Gives all warnings about a volume, each once. */
 static void warn_about_volume(snow_context *context, const dicom_stack *stack,
                               bool spacing_given) {
@@ -406,6 +424,12 @@ static void warn_about_volume(snow_context *context, const dicom_stack *stack,
                 ? "high stored values are dark (MONOCHROME1); they are inverted"
                 : "is MONOCHROME1, high values dark; the values are kept, as a "
                   "rescale defines them");
+    if (stack->placed && stack->places == 1 && stack->times > 1 &&
+        are_only_numbered(stack))
+        snow_notify(context,
+                    "all its %zu images lie at one position and differ in "
+                    "their numbers only; they are taken for time steps",
+                    stack->times);
     if (unscaled)
         snow_notify(context, "a rescale slope of 0 is not possible; 1 is used");
 }
@@ -438,6 +462,7 @@ static snow_status describe_stack(const dicom_input *input,
     const dicom_image *image = first->image;
     bool pads;
     *info = snow_volume_info_default("dicom");
+    SNOW_TRY(snow_dicom_check_mosaic(context, first));
     SNOW_TRY(stored_type(context, image, &info->type));
     SNOW_TRY(check_colors(context, image));
     survey(stack, &d->scales, &pads);
@@ -446,8 +471,8 @@ static snow_status describe_stack(const dicom_input *input,
             image->allocated > 16 ? SNOW_TYPE_FLOAT64 : SNOW_TYPE_FLOAT32;
     else if (has_palette(image))
         info->type = SNOW_TYPE_UINT8;
-    info->dims[0] = image->columns;
-    info->dims[1] = image->rows;
+    info->dims[0] = snow_dicom_columns(image);
+    info->dims[1] = snow_dicom_rows(image);
     info->dims[2] = (int64_t)stack->slice_count;
     info->times = (int64_t)stack->times;
     bool plain = d->scales || has_palette(image);
