@@ -355,6 +355,31 @@ snow_status snow_array_read(snow_source *source,
     return SNOW_STATUS_OK;
 }
 
+snow_status snow_array_take(snow_context *context,
+                            const snow_volume_options *options,
+                            const snow_array *array, const void *bytes,
+                            snow_volume_info *info, snow_volume **out) {
+    snow_region region;
+    SNOW_TRY(snow_region_lay_out(context, options, info, &region));
+    if (!out)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_volume_new(context, info, out));
+    const size_t size = (size_t)region.value;
+    const uint64_t *step = array->step, row = (uint64_t)region.count[0];
+    const unsigned char *first = (const unsigned char *)bytes + array->first +
+                                 (uint64_t)region.first[0] * step[0];
+    unsigned char *to = (*out)->owned;
+    for (int64_t z = region.first[2]; z < region.first[2] + region.count[2];
+         z++)
+        for (int64_t y = region.first[1]; y < region.first[1] + region.count[1];
+             y++) {
+            put_plain(first + (uint64_t)z * step[2] + (uint64_t)y * step[1],
+                      step[0], to, size, row, size);
+            to += row * size;
+        }
+    return SNOW_STATUS_OK;
+}
+
 /* Reads all numbers of all channels, and keeps the box of one channel. */
 static snow_status read_channel(snow_source *source, const snow_region *region,
                                 int64_t channels, int64_t channel,

@@ -52,6 +52,12 @@ snow_status snow_array_read(snow_source *source,
                             const snow_array *array, snow_volume_info *info,
                             snow_volume **out);
 
+/* The same of an array in memory, in the machine's byte order. */
+snow_status snow_array_take(snow_context *context,
+                            const snow_volume_options *options,
+                            const snow_array *array, const void *bytes,
+                            snow_volume_info *info, snow_volume **out);
+
 /* The same for decimal numbers in text, with `channels` per voxel, one of which
  * is used.  What follows them stays in the source, which is not finished. */
 snow_status snow_array_read_text(snow_source *source,

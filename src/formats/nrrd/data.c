@@ -219,6 +219,35 @@ static snow_status read_sibling(snow_source *source, const nrrd_header *header,
     return status;
 }
 
+/* Values that lie apart in text or in several files, or behind a place that is
+ * found at the end: all are read. */
+static snow_status read_apart(snow_source *source, const nrrd_header *header,
+                              const nrrd_files *files,
+                              const snow_volume_options *options,
+                              const snow_array *values, snow_volume_info *info,
+                              snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    const size_t size = snow_type_size(info->type);
+    const int64_t count = (int64_t)(values->all / size);
+    snow_volume_info flat = snow_volume_info_default("nrrd");
+    const snow_region region = {.all = values->all,
+                                .value = size,
+                                .dims = {count, 1, 1},
+                                .count = {count, 1, 1}};
+    snow_volume *all;
+    flat.type = info->type;
+    flat.dims[0] = count;
+    if (!out) {
+        SNOW_TRY(snow_nrrd_check_data(source, header, files, &region));
+        return snow_array_take(context, options, values, NULL, info, NULL);
+    }
+    SNOW_TRY(snow_nrrd_read_data(source, header, files, &flat, &region, &all));
+    snow_status status =
+        snow_array_take(context, options, values, all->voxels, info, out);
+    snow_volume_close(all);
+    return status;
+}
+
 snow_status snow_nrrd_read_values(snow_source *source,
                                   const nrrd_header *header,
                                   const nrrd_files *files,
@@ -227,26 +256,15 @@ snow_status snow_nrrd_read_values(snow_source *source,
                                   snow_volume_info *info, snow_volume **out) {
     const bool attached = files->place == NRRD_ATTACHED;
     bool at_end;
-    if (header->encoding == NRRD_ASCII || files->place > NRRD_SINGLE)
-        return snow_fail(
-            snow_source_context(source), SNOW_STATUS_BAD_INPUT,
-            "%s: has several values for each voxel in text or in several "
-            "files, "
-            "which is not supported; put them into one file with encoding raw",
-            snow_source_name(source));
+    if (header->encoding == NRRD_ASCII || files->place > NRRD_SINGLE ||
+        header->byte_skip < 0)
+        return read_apart(source, header, files, options, values, info, out);
     if (!attached)
         SNOW_TRY(snow_source_open_sibling_as_is(source, files->name, &source));
     snow_status status =
         go_to_data(source, header, attached, values->all, &at_end);
     if (status == SNOW_STATUS_OK)
-        status =
-            at_end
-                ? snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
-                            "%s: packed data at the end (byte skip -1) with "
-                            "several values for each voxel are not supported; "
-                            "give a byte skip",
-                            snow_source_name(source))
-                : snow_array_read(source, options, values, info, out);
+        status = snow_array_read(source, options, values, info, out);
     if (!attached)
         snow_source_close(source);
     return status;

@@ -1,11 +1,10 @@
 /* formats/nrrd/grid.c - selects the spatial axes of an NRRD array and places
  * the samples.
  *
- * Up to three axes are spatial, and one after them may be time (or a list of
- * volumes), of which one step is read.  One before them may have the values of
- * a voxel: a colour, whose parts are channels, or a vector.  Axes with one
- * sample may be ignored anywhere, since the order of the samples does not
- * depend on them:
+ * Up to three axes are spatial, and one at any place may be time or a list of
+ * volumes, of which one is read.  Another one may have the values of a voxel: a
+ * colour, whose parts are channels, a vector, a tensor.  Axes with one sample
+ * are ignored:
  *
  *   sizes 1 64 64 20 5, kinds stub domain domain domain time
  *         -  x  y  z t */
@@ -23,17 +22,18 @@ typedef struct axis_choice {
 } axis_choice;
 
 /* A direction in space is more reliable than a kind: some files call spatial
- * axes "list" or nothing at all. */
-static nrrd_role role_of(const nrrd_header *header, const nrrd_axis *axis) {
+ * axes "list" or nothing at all.  An axis without a direction and kind among
+ * others with one holds values if it is the first, else volumes. */
+static nrrd_role role_of(const nrrd_header *header, int i) {
+    const nrrd_axis *axis = &header->axes[i];
     if (axis->directed) {
         const double *step = axis->direction;
         bool only_time =
             step[0] == 0 && step[1] == 0 && step[2] == 0 && step[3] != 0;
         return only_time ? NRRD_AXIS_TIME : NRRD_AXIS_SPACE;
     }
-    /* "none" among the directions, and no kind that says more. */
     if (header->directions && axis->role < NRRD_AXIS_TIME)
-        return NRRD_AXIS_VALUES;
+        return i ? NRRD_AXIS_LIST : NRRD_AXIS_VALUES;
     return axis->role == NRRD_AXIS_UNKNOWN ? NRRD_AXIS_SPACE : axis->role;
 }
 
@@ -59,38 +59,45 @@ static bool are_colors(const nrrd_header *header, int axis) {
            (size == 3 || size == 4);
 }
 
-/* A time step must be contiguous, so time comes last, and the values of a voxel
- * first. */
+/* Of four axes that may all be of space, as ITK writes those of an image with
+ * time, the last one is no space.  A short first axis without a kind may be
+ * one of values, though. */
+static void take_fourth(snow_context *context, const nrrd_header *header,
+                        axis_choice *choice) {
+    const nrrd_axis *first = &header->axes[choice->space[0]];
+    if (choice->spaces != 4 || choice->time >= 0 ||
+        (first->role == NRRD_AXIS_UNKNOWN && !first->directed &&
+         first->size <= 4))
+        return;
+    choice->time = choice->space[--choice->spaces];
+    snow_notify(context,
+                "axis %d is taken to be time or a list of volumes, since three "
+                "others are of space",
+                choice->time);
+}
+
 static snow_status choose_axes(snow_context *context, const nrrd_header *header,
                                axis_choice *out) {
     *out = (axis_choice){.time = -1, .values = -1};
     for (int i = 0; i < header->dimension; i++) {
-        nrrd_role role = role_of(header, &header->axes[i]);
-        if (role != NRRD_AXIS_SPACE && header->axes[i].size == 1)
-            continue;
-        const bool first = out->values < 0 && !out->spaces && out->time < 0;
-        if (first && (are_colors(header, i) || role == NRRD_AXIS_VECTOR)) {
-            out->values = i;
+        nrrd_role role = role_of(header, i);
+        if (role == NRRD_AXIS_SPACE) {
+            out->space[out->spaces++] = i;
             continue;
         }
-        if (role >= NRRD_AXIS_COLORS)
-            return snow_fail(
-                context, SNOW_STATUS_BAD_INPUT,
-                "axis %d has %lld values for each voxel, and is no first axis "
-                "of 3 or 4 colours or of a vector; extract one as a volume",
-                i, (long long)header->axes[i].size);
-        /* Spatial axes after time would be scattered in the file. */
-        if (out->time >= 0)
+        if (header->axes[i].size == 1)
+            continue;
+        int *of = role <= NRRD_AXIS_LIST ? &out->time : &out->values;
+        if (*of >= 0)
             return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                             "axis %d, time or a list of volumes, is not the "
-                             "last one; reorder the axes",
-                             out->time);
-        if (role == NRRD_AXIS_TIME)
-            out->time = i;
-        else
-            out->space[out->spaces++] = i;
+                             "axes %d and %d are both %s; extract one volume",
+                             *of, i,
+                             of == &out->time ? "time or a list of volumes"
+                                              : "values of each voxel");
+        *of = i;
     }
     drop_flat_axes(header, out);
+    take_fourth(context, header, out);
     if (out->spaces > 3)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
@@ -173,60 +180,90 @@ static void take_units(snow_context *context, const nrrd_header *header,
 }
 
 /* The channel or component of the options. */
-static snow_status lay_values(snow_context *context, const nrrd_header *header,
+static snow_status pick_value(snow_context *context, const nrrd_header *header,
                               int axis, const snow_volume_options *options,
-                              snow_volume_info *info, snow_array *out) {
-    const int64_t sizes[5] = {header->axes[axis].size, info->dims[0],
-                              info->dims[1], info->dims[2], info->times};
-    const uint64_t size = snow_type_size(header->type);
-    snow_array array = {.big_endian = header->big_endian};
-    uint64_t steps[5];
-    int64_t value = 0;
-    if (!snow_array_steps(sizes, 5, size, steps, &array.all))
+                              snow_volume_info *info, int64_t *out) {
+    const int64_t count = axis < 0 ? 1 : header->axes[axis].size;
+    if (axis >= 0 && !are_colors(header, axis))
+        return snow_volume_pick_component(context, options, count, info, out);
+    if (axis >= 0) {
+        snow_channels_begin(info, count, false);
+        snow_channels_are_colors(info);
+    }
+    return snow_volume_pick_channel(context, options, count, info, out);
+}
+
+/* Where the voxels lie that are chosen. */
+static snow_status lay_array(snow_context *context, const nrrd_header *header,
+                             const axis_choice *choice, int64_t value,
+                             const snow_volume_info *info, snow_array *out) {
+    int64_t sizes[NRRD_MOST_AXES];
+    uint64_t steps[NRRD_MOST_AXES];
+    *out = (snow_array){.big_endian = header->big_endian};
+    for (int i = 0; i < header->dimension; i++)
+        sizes[i] = header->axes[i].size;
+    if (!snow_array_steps(sizes, header->dimension,
+                          snow_type_size(header->type), steps, &out->all))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "its sizes are too large for any file; correct the "
                          "header");
-    if (are_colors(header, axis)) {
-        snow_channels_begin(info, sizes[0], false);
-        snow_channels_are_colors(info);
-        SNOW_TRY(
-            snow_volume_pick_channel(context, options, sizes[0], info, &value));
-    } else {
-        SNOW_TRY(snow_volume_pick_component(context, options, sizes[0], info,
-                                            &value));
-    }
-    memcpy(array.step, steps + 1, sizeof array.step);
-    array.first = (uint64_t)info->time * steps[4] + (uint64_t)value * steps[0];
-    *out = array;
+    for (int i = 0; i < choice->spaces; i++)
+        out->step[i] = steps[choice->space[i]];
+    if (choice->time >= 0)
+        out->first = (uint64_t)info->time * steps[choice->time];
+    if (choice->values >= 0)
+        out->first += (uint64_t)value * steps[choice->values];
     return SNOW_STATUS_OK;
+}
+
+/* Spacings that are not a number are common where only some are known. */
+static void complete_spacings(snow_context *context, nrrd_header *header,
+                              const axis_choice *choice) {
+    for (int i = 0; i < choice->spaces; i++) {
+        nrrd_axis *axis = &header->axes[choice->space[i]];
+        if (axis->directed || !isnan(axis->spacing))
+            continue;
+        axis->spacing = 1;
+        snow_notify(context,
+                    "the spacing of axis %d is not known and taken as 1; "
+                    "--spacing sets another",
+                    choice->space[i]);
+    }
 }
 
 /* The matrix is checked before the time step: an error of the file comes before
  * one of the options. */
-snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
+snow_status snow_nrrd_lay_out(snow_context *context, nrrd_header *header,
                               const snow_volume_options *options,
                               snow_volume_info *info, snow_region *region,
                               snow_array *values) {
     axis_choice choice;
-    int64_t only;
+    int64_t value;
     *values = (snow_array){.all = 0};
     SNOW_TRY(choose_axes(context, header, &choice));
+    const int time = choice.time;
     info->type = header->type;
     info->medical = header->medical;
     for (int i = 0; i < choice.spaces; i++)
         info->dims[i] = header->axes[choice.space[i]].size;
-    if (choice.time >= 0)
-        info->times = header->axes[choice.time].size;
+    if (time >= 0)
+        info->times = header->axes[time].size;
+    complete_spacings(context, header, &choice);
     fill_matrix(header, &choice, info->matrix);
     take_units(context, header, &choice, info);
     SNOW_TRY(snow_volume_info_check(context, info));
-    SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
-    if (choice.values < 0)
-        SNOW_TRY(snow_volume_pick_channel(context, options, 1, info, &only));
-    SNOW_TRY(choice.values < 0
-                 ? snow_region_lay_out(context, options, info, region)
-                 : lay_values(context, header, choice.values, options, info,
-                              values));
+    SNOW_TRY(snow_volume_pick_time(
+        context,
+        time >= 0 && role_of(header, time) == NRRD_AXIS_TIME ? "time step"
+                                                             : "volume",
+        options, info));
+    SNOW_TRY(pick_value(context, header, choice.values, options, info, &value));
+    const bool scattered =
+        choice.values >= 0 ||
+        (time >= 0 && choice.spaces && time < choice.space[choice.spaces - 1]);
+    SNOW_TRY(scattered
+                 ? lay_array(context, header, &choice, value, info, values)
+                 : snow_region_lay_out(context, options, info, region));
     if (header->turn[2] < 0)
         snow_notify(context, "the world is left-handed; z is flipped, so that "
                              "nothing is mirrored");

@@ -78,7 +78,7 @@ static const name_value encoding_names[] = {
 /* Kinds of several values: complex numbers, vectors, colours, tensors. */
 static const name_value role_names[] = {
     {"domain", NRRD_AXIS_SPACE},    {"space", NRRD_AXIS_SPACE},
-    {"time", NRRD_AXIS_TIME},       {"list", NRRD_AXIS_TIME},
+    {"time", NRRD_AXIS_TIME},       {"list", NRRD_AXIS_LIST},
     {"???", NRRD_AXIS_UNKNOWN},     {"none", NRRD_AXIS_UNKNOWN},
     {"rgbcolor", NRRD_AXIS_COLORS}, {"rgbacolor", NRRD_AXIS_COLORS},
     {"3color", NRRD_AXIS_COLORS},   {"4color", NRRD_AXIS_COLORS},
@@ -308,8 +308,8 @@ static snow_status parse_ends(snow_context *context, const nrrd_text *text,
     return SNOW_STATUS_OK;
 }
 
-/* NaN is accepted here: it is right for an axis that is not spatial, and is
- * refused for a spatial one later. */
+/* NaN is accepted here: it is right for an axis that is not spatial, and means
+ * not known for a spatial one. */
 static snow_status parse_spacings(snow_context *context, const nrrd_text *text,
                                   nrrd_header *out) {
     double spacings[NRRD_MOST_AXES];

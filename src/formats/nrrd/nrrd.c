@@ -3,6 +3,7 @@
 #include "formats/nrrd/nrrd.h"
 #include "formats/write.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -10,6 +11,36 @@
  * raw data. */
 static bool looks_nrrd(const unsigned char *bytes, size_t size) {
     return size >= 6 && !memcmp(bytes, "NRRD00", 6);
+}
+
+/* Where no segment has a layer, as 3D Slicer wrote before 2020, each of several
+ * volumes holds one segment, as 1. */
+static snow_status set_labels(snow_context *context, const nrrd_text *text,
+                              const snow_volume_info *info,
+                              snow_volume *volume) {
+    const size_t count = text->segment_count;
+    int64_t last = -1;
+    size_t used = 0;
+    for (size_t i = 0; i < count; i++)
+        if (text->segments[i].layer > last)
+            last = text->segments[i].layer;
+    const bool old = last < 0 && info->times == (int64_t)count && count > 1;
+    snow_label *labels = snow_allocate_array(context, count, sizeof *labels);
+    if (!labels)
+        return SNOW_STATUS_NO_MEMORY;
+    for (size_t i = 0; i < count; i++) {
+        const nrrd_segment *segment = &text->segments[i];
+        if ((last > 0 && segment->layer != info->time && info->times > 1) ||
+            (old && (int64_t)i != info->time))
+            continue;
+        labels[used] = segment->label;
+        if (isnan(labels[used].value))
+            labels[used].value = old ? 1 : (double)i + 1;
+        used++;
+    }
+    snow_status status = snow_volume_set_labels(volume, labels, used);
+    snow_release(context, labels);
+    return status;
 }
 
 /* The whole header is checked before a data file is opened or the voxels are
@@ -30,15 +61,14 @@ static snow_status read_parsed(snow_source *source, const nrrd_text *text,
     if (unit && sscanf(unit + (*unit == '"'), "%31[^\"]", info->value_unit) < 1)
         *info->value_unit = 0;
     SNOW_TRY(snow_nrrd_find_files(context, text, &header, &files));
-    if (values.all)
-        return snow_nrrd_read_values(source, &header, &files, options, &values,
-                                     info, out);
-    if (!out)
+    if (!out && !values.all)
         return snow_nrrd_check_data(source, &header, &files, &region);
-    SNOW_TRY(snow_nrrd_read_data(source, &header, &files, info, &region, out));
-    return text->labels
-               ? snow_volume_set_labels(*out, text->labels, text->label_count)
-               : SNOW_STATUS_OK;
+    SNOW_TRY(values.all ? snow_nrrd_read_values(source, &header, &files,
+                                                options, &values, info, out)
+                        : snow_nrrd_read_data(source, &header, &files, info,
+                                              &region, out));
+    return text->segments && out ? set_labels(context, text, info, *out)
+                                 : SNOW_STATUS_OK;
 }
 
 /* Owns the text, so that the early returns below leak nothing. */
@@ -50,7 +80,7 @@ static snow_status read_nrrd(snow_source *source,
     if (status == SNOW_STATUS_OK)
         status = read_parsed(source, &text, options, info, out);
     snow_release(snow_source_context(source), text.block);
-    snow_release(snow_source_context(source), text.labels);
+    snow_release(snow_source_context(source), text.segments);
     return status;
 }
 

@@ -61,6 +61,12 @@ typedef enum nrrd_field {
         NRRD_FIELD_COUNT
 } nrrd_field;
 
+/* A segment of 3D Slicer; of overlapping ones each layer is a volume. */
+typedef struct nrrd_segment {
+    snow_label label; /* its value is NaN if not given */
+    int64_t layer;    /* -1: not given */
+} nrrd_segment;
+
 /* The text of a header: each field's value as a string in `block`, followed by
  * the names of the data files if the header lists them. */
 typedef struct nrrd_text {
@@ -69,8 +75,8 @@ typedef struct nrrd_text {
     size_t value[NRRD_FIELD_COUNT]; /* offset in block, 0: no such field */
     size_t list;                    /* offset of the listed names */
     uint64_t listed;                /* number of names; each is a string */
-    snow_label *labels;             /* 3D Slicer's segments; NULL: none */
-    size_t label_count;
+    nrrd_segment *segments;         /* NULL: none */
+    size_t segment_count;
 } nrrd_text;
 
 typedef enum nrrd_encoding { NRRD_RAW, NRRD_GZIP, NRRD_ASCII } nrrd_encoding;
@@ -79,7 +85,8 @@ typedef enum nrrd_encoding { NRRD_RAW, NRRD_GZIP, NRRD_ASCII } nrrd_encoding;
 typedef enum nrrd_role {
     NRRD_AXIS_UNKNOWN, /* spatial, unless there are too many axes */
     NRRD_AXIS_SPACE,
-    NRRD_AXIS_TIME,   /* or a list of volumes */
+    NRRD_AXIS_TIME,
+    NRRD_AXIS_LIST,   /* of volumes */
     NRRD_AXIS_COLORS, /* red, green, blue and perhaps opacity */
     NRRD_AXIS_VECTOR,
     NRRD_AXIS_VALUES /* of a tensor, or of an unknown kind */
@@ -139,10 +146,10 @@ snow_status snow_nrrd_parse_header(snow_context *context, const nrrd_text *text,
                                    nrrd_header *out);
 
 /* Sets dims, matrix, times and all else of the info; applies the time step and
- * the box of the options, and finds their place in the array.  Where voxels
- * have several values, values->all is not 0, and the box is left to
- * snow_nrrd_read_values. */
-snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
+ * the box of the options, and finds their place in the array.  Where the voxels
+ * of a volume do not follow one another, values->all is not 0, and the box is
+ * left to snow_nrrd_read_values. */
+snow_status snow_nrrd_lay_out(snow_context *context, nrrd_header *header,
                               const snow_volume_options *options,
                               snow_volume_info *info, snow_region *region,
                               snow_array *values);
@@ -163,7 +170,7 @@ snow_status snow_nrrd_check_data(snow_source *source, const nrrd_header *header,
                                  const nrrd_files *files,
                                  const snow_region *region);
 
-/* Makes the volume of one value of each voxel, or of the header alone its
+/* Makes the volume of values that lie apart, or of the header alone its
  * info. */
 snow_status snow_nrrd_read_values(snow_source *source,
                                   const nrrd_header *header,

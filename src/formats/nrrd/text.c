@@ -95,15 +95,18 @@ static snow_status take_segment(snow_context *context, nrrd_text *text,
         return SNOW_STATUS_OK;
     size_t number = (size_t)strtoul(digits, NULL, 10);
     SNOW_TRY(
-        SNOW_RESERVE(context, text->labels, text->label_count, number + 1));
-    for (; text->label_count <= number; text->label_count++)
-        text->labels[text->label_count] =
-            (snow_label){(double)text->label_count + 1, {-1, 0, 0, -1}, ""};
-    snow_label *label = &text->labels[number];
+        SNOW_RESERVE(context, text->segments, text->segment_count, number + 1));
+    while (text->segment_count <= number)
+        text->segments[text->segment_count++] =
+            (nrrd_segment){{NAN, {-1, 0, 0, -1}, ""}, -1};
+    snow_label *label = &text->segments[number].label;
+    int64_t *layer = &text->segments[number].layer;
     bool good = true;
     if (!strcmp(key, "LabelValue"))
         good = snow_parse_double(line + at, &label->value) &&
                isfinite(label->value);
+    else if (!strcmp(key, "Layer"))
+        good = snow_parse_int64(line + at, layer) && *layer >= 0;
     else if (!strcmp(key, "Name"))
         snprintf(label->name, sizeof label->name, "%s", line + at);
     else if (!strcmp(key, "Opacity"))
@@ -114,8 +117,9 @@ static snow_status take_segment(snow_context *context, nrrd_text *text,
     if (good)
         return SNOW_STATUS_OK;
     return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                     "the header's line \"%.60s\" is wrong; a label is a "
-                     "number, a colour three numbers of 0 to 1, an opacity one",
+                     "the header's line \"%.60s\" is wrong; a label or a "
+                     "layer is a number, a colour three numbers of 0 to 1, an "
+                     "opacity one",
                      line);
 }
 
