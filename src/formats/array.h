@@ -97,6 +97,12 @@ snow_status snow_volume_pick_component(snow_context *context,
                                        int64_t count, snow_volume_info *info,
                                        int64_t *out);
 
+/* One or the other: `count` values of a voxel are colours or a vector. */
+snow_status snow_volume_pick_value(snow_context *context,
+                                   const snow_volume_options *options,
+                                   int64_t count, bool colors,
+                                   snow_volume_info *info, int64_t *out);
+
 /* For readers of arrays: takes sizes and number of steps from the axes, then
  * selects channel or component, and time step.  info->type is set already. */
 snow_status snow_volume_pick_axes(snow_context *context,

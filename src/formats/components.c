@@ -180,6 +180,19 @@ snow_status snow_volume_pick_component(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
+snow_status snow_volume_pick_value(snow_context *context,
+                                   const snow_volume_options *options,
+                                   int64_t count, bool colors,
+                                   snow_volume_info *info, int64_t *out) {
+    if (count > 1 && !colors)
+        return snow_volume_pick_component(context, options, count, info, out);
+    if (count > 1) {
+        snow_channels_begin(info, count, false);
+        snow_channels_are_colors(info);
+    }
+    return snow_volume_pick_channel(context, options, count, info, out);
+}
+
 snow_status snow_volume_pick_axes(snow_context *context,
                                   const snow_volume_options *options,
                                   const snow_axes *roles, const int64_t *sizes,

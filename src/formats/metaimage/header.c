@@ -305,11 +305,9 @@ static snow_status read_sizes(snow_context *context, const fields *f,
                          f->key[AXES] ? "DimSize" : "NDims");
     if (axes < 1 || axes > 4)
         return fail_value(context, f, AXES, "a number of axes from 1 to 4");
-    if (channels != 1)
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "voxels of %lld channels are not supported; convert "
-                         "them to one number each",
-                         (long long)channels);
+    if (channels < 1)
+        return fail_value(context, f, CHANNELS, "at least 1");
+    header->channels = channels;
     header->axes = (int)axes;
     for (int i = 0; i < 4; i++)
         header->dims[i] = 1;
@@ -323,6 +321,7 @@ static snow_status read_sizes(snow_context *context, const fields *f,
     memcpy(header->info.dims, header->dims, sizeof header->info.dims);
     if (!snow_volume_count(header->dims, header->info.type, &voxels, &step) ||
         !snow_mul_u64(step, (uint64_t)header->dims[3], &all) ||
+        !snow_mul_u64(all, (uint64_t)channels, &all) ||
         all > (uint64_t)INT64_MAX)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "%s is \"%.60s\", too large for any file; correct "
@@ -333,8 +332,9 @@ static snow_status read_sizes(snow_context *context, const fields *f,
 }
 
 /* ElementSize, the size of a voxel, is used if the distance between voxels is
- * missing.  An invalid length is refused, not replaced by 1 as in NIfTI, where
- * such files are common.  The fourth length, of time, is ignored. */
+ * missing.  A length below 0 reverses its axis, as in ITK.  An invalid length
+ * is refused, not replaced by 1 as in NIfTI, where such files are common.  The
+ * fourth length, of time, is ignored. */
 static snow_status read_spacing(snow_context *context, const fields *f,
                                 int axes, double spacing[4]) {
     slot where = f->key[SPACING] ? SPACING : SIZE;
@@ -342,10 +342,10 @@ static snow_status read_spacing(snow_context *context, const fields *f,
         return SNOW_STATUS_OK;
     bool good = parse_numbers(f->value[where], axes, spacing);
     for (int i = 0; i < axes && i < 3; i++)
-        good = good && isfinite(spacing[i]) && spacing[i] > 0;
+        good = good && isfinite(spacing[i]) && spacing[i] != 0;
     return good ? SNOW_STATUS_OK
                 : fail_value(context, f, where,
-                             "one length above 0 for each axis");
+                             "one length for each axis, which is not 0");
 }
 
 /* Millimetres per unit; a missing unit and "?" count as mm, as ITK has it. */
@@ -421,6 +421,18 @@ static snow_status read_layout(snow_context *context, const fields *f,
     return SNOW_STATUS_OK;
 }
 
+/* Exact names only: guessing a type would mean guessing the size of a voxel.
+ * MetaIO has a second name for values of several channels. */
+static snow_type type_named(const char *name) {
+    for (size_t i = 0; i < TYPE_COUNT; i++) {
+        const size_t length = strlen(types[i].name);
+        if (!strncmp(name, types[i].name, length) &&
+            (!name[length] || !strcmp(name + length, "_ARRAY")))
+            return types[i].type;
+    }
+    return SNOW_TYPE_NONE;
+}
+
 /* The type comes before the sizes, whose product in bytes needs it. */
 static snow_status interpret(snow_context *context, const fields *f,
                              metaimage_header *header) {
@@ -428,11 +440,7 @@ static snow_status interpret(snow_context *context, const fields *f,
         return fail_value(context, f, OBJECT_TYPE,
                           "Image; only images are volumes");
     header->info = snow_volume_info_default("metaimage");
-    /* Exact names only: guessing a type would mean guessing the size of a
-     * voxel. */
-    for (size_t i = 0; i < TYPE_COUNT; i++)
-        if (f->key[TYPE] && strcmp(f->value[TYPE], types[i].name) == 0)
-            header->info.type = types[i].type;
+    header->info.type = type_named(f->value[TYPE]);
     if (!f->key[TYPE])
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "the header has no ElementType; add it");

@@ -6,6 +6,7 @@
  * Each file of several holds some of the axes; the parts follow one another in
  * memory as the files do in the list. */
 #include "formats/metaimage/metaimage.h"
+#include "formats/array.h"
 #include "formats/ascii.h"
 #include "formats/write.h"
 #include "io/lookup.h"
@@ -115,7 +116,7 @@ static snow_status plan_series(const reading *r, int axes, series *out) {
                          "a LIST of files with %d axes each does not make %d "
                          "axes; correct ElementDataFile",
                          axes, header->axes);
-    out->bytes = snow_type_size(header->info.type);
+    out->bytes = (uint64_t)header->channels * snow_type_size(header->info.type);
     out->count = 1;
     for (int i = 0; i < 4; i++) {
         if (i < axes)
@@ -227,10 +228,10 @@ static snow_status read_pattern(const reading *r, snow_volume **out) {
 
 /* Opens a name in the header: a path relative to the header's folder, or an
  * absolute one. */
-static snow_status read_detached(const reading *r, snow_volume **out) {
-    snow_source *source = r->source, *data;
+static snow_status open_detached(const reading *r, snow_source **out) {
+    snow_source *source = r->source;
     const metaimage_header *header = r->header;
-    snow_status status = open_data(source, header, header->data, &data);
+    snow_status status = open_data(source, header, header->data, out);
     /* The name of a file, as far as the header has it. */
     if (status == SNOW_STATUS_BAD_INPUT && *header->data &&
         !strncmp("LOCAL", header->data, strlen(header->data))) {
@@ -240,8 +241,13 @@ static snow_status read_detached(const reading *r, snow_volume **out) {
                          "may be truncated within LOCAL",
                          header->data);
     }
-    SNOW_TRY(status);
-    status = read_whole(data, r, out);
+    return status;
+}
+
+static snow_status read_detached(const reading *r, snow_volume **out) {
+    snow_source *data;
+    SNOW_TRY(open_detached(r, &data));
+    snow_status status = read_whole(data, r, out);
     snow_source_close(data);
     return status;
 }
@@ -260,15 +266,90 @@ static bool is_local(const metaimage_header *header) {
 
 /* ElementDataFile's special words, which have priority over a file of that name
  * ("./LOCAL" still opens one). */
+static bool is_series(const metaimage_header *header) {
+    return is_word(header->data, "LIST", "List") || strchr(header->data, '%');
+}
+
 static snow_status read_data(const reading *r, snow_volume **out) {
     const char *data = r->header->data;
     if (is_local(r->header))
         return read_whole(r->source, r, out);
     if (is_word(data, "LIST", "List"))
         return read_list(r, out);
-    if (strchr(data, '%'))
-        return read_pattern(r, out);
-    return read_detached(r, out);
+    return strchr(data, '%') ? read_pattern(r, out) : read_detached(r, out);
+}
+
+/* One of several values of each voxel, in one file of binary data. */
+static snow_status read_channel(const reading *r,
+                                const snow_volume_options *options,
+                                const snow_array *array, snow_volume_info *info,
+                                snow_volume **out) {
+    const bool local = is_local(r->header);
+    snow_source *data = r->source;
+    if (!local && !out)
+        return snow_array_take(snow_source_context(data), options, array, NULL,
+                               info, NULL);
+    if (!local)
+        SNOW_TRY(open_detached(r, &data));
+    snow_status status = begin_part(data, r->header, array->all);
+    if (status == SNOW_STATUS_OK)
+        status = snow_array_read(data, options, array, info, out);
+    if (!local)
+        snow_source_close(data);
+    return status;
+}
+
+/* The same of text and of several files, all of whose values are read. */
+static snow_status read_all_channels(reading *r,
+                                     const snow_volume_options *options,
+                                     const snow_array *array,
+                                     snow_volume_info *info,
+                                     snow_volume **out) {
+    snow_context *context = snow_source_context(r->source);
+    const size_t size = snow_type_size(info->type);
+    const int64_t count = (int64_t)(array->all / size);
+    snow_volume_info flat = snow_volume_info_default("metaimage");
+    snow_volume *all = NULL;
+    if (!out)
+        return snow_array_take(context, options, array, NULL, info, NULL);
+    flat.type = info->type;
+    flat.dims[0] = count;
+    r->info = &flat;
+    r->region = (snow_region){.all = array->all,
+                              .value = size,
+                              .dims = {count, 1, 1},
+                              .count = {count, 1, 1}};
+    snow_status status = read_data(r, &all);
+    if (status == SNOW_STATUS_OK && !r->header->text)
+        snow_volume_order_bytes(all, r->header->big_endian);
+    if (status == SNOW_STATUS_OK)
+        status =
+            snow_array_take(context, options, array, all->voxels, info, out);
+    snow_volume_close(all);
+    return status;
+}
+
+static snow_status read_channels(reading *r, const snow_volume_options *options,
+                                 snow_volume_info *info, snow_volume **out) {
+    const metaimage_header *header = r->header;
+    const int64_t *dims = header->dims, count = header->channels;
+    const int64_t sizes[5] = {count, dims[0], dims[1], dims[2], dims[3]};
+    snow_array array = {.big_endian = header->big_endian};
+    uint64_t steps[5];
+    int64_t channel;
+    SNOW_TRY(snow_volume_pick_value(
+        snow_source_context(r->source), options, count,
+        info->type == SNOW_TYPE_UINT8 && (count == 3 || count == 4), info,
+        &channel));
+    /* The header's sizes were checked. */
+    (void)snow_array_steps(sizes, 5, snow_type_size(info->type), steps,
+                           &array.all);
+    memcpy(array.step, steps + 1, sizeof array.step);
+    array.first =
+        (uint64_t)channel * steps[0] + (uint64_t)info->time * steps[4];
+    return header->text || (!is_local(header) && is_series(header))
+               ? read_all_channels(r, options, &array, info, out)
+               : read_channel(r, options, &array, info, out);
 }
 
 /* Bytes are swapped once at the end, however the voxels were read. */
@@ -281,6 +362,8 @@ static snow_status read_metaimage(snow_source *source,
     SNOW_TRY(metaimage_read_header(source, &header));
     *info = header.info;
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
+    if (header.channels > 1)
+        return read_channels(&r, options, info, out);
     SNOW_TRY(snow_region_lay_out(context, options, info, &r.region));
     if (!out)
         return is_local(&header) ? begin_part(source, &header, r.region.all)
@@ -303,6 +386,7 @@ const snow_format snow_format_metaimage = {
     .suffixes = {".mha", ".mhd", ".mha.gz"},
     .probe = metaimage_probe,
     .crops = true,
+    .channels = true,
     .read = read_metaimage,
     .write = snow_metaimage_write,
 };

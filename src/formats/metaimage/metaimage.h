@@ -9,10 +9,11 @@
 
 typedef struct metaimage_header {
     snow_volume_info info;
-    int axes;        /* NDims, 1 to 4 */
-    int64_t dims[4]; /* 1 beyond `axes` */
-    bool text;       /* the voxels are decimal numbers */
-    bool compressed; /* by zlib or gzip */
+    int axes;         /* NDims, 1 to 4 */
+    int64_t dims[4];  /* 1 beyond `axes` */
+    int64_t channels; /* values of each voxel */
+    bool text;        /* the voxels are decimal numbers */
+    bool compressed;  /* by zlib or gzip */
     bool big_endian;
     int64_t
         header_size; /* bytes before the voxels; -1: the voxels end the file */

@@ -179,20 +179,6 @@ static void take_units(snow_context *context, const nrrd_header *header,
         memcpy(info->unit, "mm", 3);
 }
 
-/* The channel or component of the options. */
-static snow_status pick_value(snow_context *context, const nrrd_header *header,
-                              int axis, const snow_volume_options *options,
-                              snow_volume_info *info, int64_t *out) {
-    const int64_t count = axis < 0 ? 1 : header->axes[axis].size;
-    if (axis >= 0 && !are_colors(header, axis))
-        return snow_volume_pick_component(context, options, count, info, out);
-    if (axis >= 0) {
-        snow_channels_begin(info, count, false);
-        snow_channels_are_colors(info);
-    }
-    return snow_volume_pick_channel(context, options, count, info, out);
-}
-
 /* Where the voxels lie that are chosen. */
 static snow_status lay_array(snow_context *context, const nrrd_header *header,
                              const axis_choice *choice, int64_t value,
@@ -257,10 +243,12 @@ snow_status snow_nrrd_lay_out(snow_context *context, nrrd_header *header,
         time >= 0 && role_of(header, time) == NRRD_AXIS_TIME ? "time step"
                                                              : "volume",
         options, info));
-    SNOW_TRY(pick_value(context, header, choice.values, options, info, &value));
-    const bool scattered =
-        choice.values >= 0 ||
-        (time >= 0 && choice.spaces && time < choice.space[choice.spaces - 1]);
+    const bool some = choice.values >= 0;
+    SNOW_TRY(snow_volume_pick_value(
+        context, options, some ? header->axes[choice.values].size : 1,
+        some && are_colors(header, choice.values), info, &value));
+    const bool scattered = some || (time >= 0 && choice.spaces &&
+                                    time < choice.space[choice.spaces - 1]);
     SNOW_TRY(scattered
                  ? lay_array(context, header, &choice, value, info, values)
                  : snow_region_lay_out(context, options, info, region));
