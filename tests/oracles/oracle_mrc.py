@@ -88,6 +88,20 @@ for value in (0, np.nan):
         file.set_data(stack[0])
         file.header.cella = (value, value, value)
     oracle.expect("e.mrc", stack[0], unit="", name=f"cell of {value}")
+
+# Headers that mrcfile, which looks at no axes, opens with a warning: those in no
+# order, and those without a number of intervals, where it divides by 0.
+for name, at, words, turn in (
+        ("no order", 64, [1, 1, 2], 1), ("axes unset", 64, [0, 0, 99], 1),
+        ("from the top", 64, [1, -2, 3], -1), ("no intervals", 28, [0] * 3, 1)):
+    with mrcfile.new("h.mrc", overwrite=True) as file:
+        file.set_data(stack[0])
+        file.set_volume()
+        file.voxel_size = (2, 3, 4)
+    oracle.patch("h.mrc", at, np.array(words, "<i4").tobytes())
+    with mrcfile.open("h.mrc", permissive=True) as file:
+        matrix = oracle.affine((2, 3 * turn, 4), (0, 12 if turn < 0 else 0, 0))
+        oracle.expect("h.mrc", file.data, matrix, name=name)
 a = oracle.sample("i1")
 with mrcfile.new("f.mrc", overwrite=True) as file:
     file.set_data(a)

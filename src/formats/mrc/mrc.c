@@ -23,6 +23,7 @@
 #include "formats/array.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define HEADER_BYTES 1024
@@ -62,28 +63,32 @@ static double real(const mrc_header *header, int number) {
     return value;
 }
 
-/* True if the words that have few valid values have one of them. */
-static bool is_plausible(const mrc_header *header) {
+/* True if the words that have few valid values have one of them: the sizes and
+ * the mode, and the axes, which some programs leave unset. */
+static bool has_mode(const mrc_header *header) {
     int32_t mode = whole(header, 4);
-    bool axes = true;
+    return whole(header, 1) > 0 && whole(header, 2) > 0 &&
+           whole(header, 3) > 0 && mode >= 0 && mode <= 101;
+}
+
+static bool is_plausible(const mrc_header *header) {
+    bool axes = has_mode(header);
     for (int i = 0; i < 3; i++) {
         int32_t axis = whole(header, 17 + i);
-        axes = axes && axis >= 0 && axis <= 3;
-        axes = axes && whole(header, 1 + i) > 0;
+        axes = axes && axis >= -3 && axis <= 3;
     }
-    return axes && mode >= 0 && mode <= 101;
+    return axes;
 }
 
 /* The stamp gives the byte order, if programs wrote it; otherwise it is the
  * order in which the header is plausible. */
 static mrc_header header_of(const unsigned char *bytes) {
     mrc_header header = {bytes, bytes[212] == 0x11};
-    if (!is_plausible(&header)) {
-        const mrc_header other = {bytes, !header.big_endian};
-        if (is_plausible(&other))
-            return other;
-    }
-    return header;
+    const mrc_header other = {bytes, !header.big_endian};
+    const bool better = is_plausible(&other)
+                            ? !is_plausible(&header)
+                            : !has_mode(&header) && has_mode(&other);
+    return better ? other : header;
 }
 
 /* Recognised by "MAP ", which files from before 2000 lack: those are known by
@@ -92,7 +97,7 @@ static bool probe_mrc(const unsigned char *bytes, size_t size) {
     if (size < HEADER_BYTES || memcmp(bytes + 208, "MAP", 3) != 0)
         return false;
     const mrc_header header = header_of(bytes);
-    return is_plausible(&header);
+    return has_mode(&header);
 }
 
 static bool parse_mode(const mrc_header *header, snow_volume_info *info,
@@ -122,16 +127,31 @@ static bool parse_mode(const mrc_header *header, snow_volume_info *info,
     }
 }
 
+/* Where the number of intervals along an axis is missing, the cell is that of
+ * the voxels. */
+static int32_t intervals(const mrc_header *header, const int order[3],
+                         int axis) {
+    int32_t given = whole(header, 8 + axis);
+    for (int j = 0; j < 3 && given <= 0; j++)
+        if (order[j] == axis)
+            return whole(header, 1 + j);
+    return given;
+}
+
 /* The cell's axes as columns, in angstrom: X along x, Y in the plane of x and
  * y, as in the Protein Data Bank.  Returns false if it is not a cell. */
-static bool cell_axes(const mrc_header *header, double axes[3][3]) {
+static bool cell_axes(const mrc_header *header, const int order[3],
+                      double axes[3][3]) {
     double length[3], cosine[3];
     bool right = true;
     for (int i = 0; i < 3; i++) {
         length[i] = real(header, 11 + i);
         double angle = real(header, 14 + i);
-        right = right && length[i] > 0 && isfinite(length[i]) &&
-                whole(header, 8 + i) > 0;
+        /* Microscopes know no distance of images. */
+        if (i == 2 && length[i] == 0)
+            length[i] = length[0] / intervals(header, order, 0) *
+                        intervals(header, order, i);
+        right = right && length[i] > 0 && isfinite(length[i]);
         /* Microscopes often write angles of 0 and mean 90, whose cosine is 0
          * exactly. */
         if (angle == 0 || angle == 90)
@@ -151,24 +171,31 @@ static bool cell_axes(const mrc_header *header, double axes[3][3]) {
         {1, cosine[2], cosine[1]}, {0, sine, up}, {0, 0, sqrt(rest)}};
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            axes[i][j] = unit[i][j] * length[j] / whole(header, 8 + j);
+            axes[i][j] = unit[i][j] * length[j] / intervals(header, order, j);
     return true;
 }
 
 /* The cell axis of columns, rows and sections, from 0; three zeros mean the
- * usual order. */
-static bool parse_order(const mrc_header *header, int order[3]) {
+ * usual order.  Others that are no order are left unset by programs, and taken
+ * as the usual one, as ChimeraX has it. */
+static void parse_order(snow_context *context, const mrc_header *header,
+                        int order[3]) {
     int seen = 0, given = 0;
     for (int i = 0; i < 3; i++) {
-        int axis = whole(header, 17 + i);
+        int32_t axis = whole(header, 17 + i);
         given |= axis;
-        order[i] = axis - 1;
-        if (axis >= 1 && axis <= 3)
+        order[i] = axis >= -3 && axis <= 3 ? abs(axis) - 1 : -1;
+        if (order[i] >= 0)
             seen |= 1 << order[i];
     }
-    for (int i = 0; i < 3 && !given; i++)
+    for (int i = 0; i < 3 && seen != 7; i++)
         order[i] = i;
-    return !given || seen == 7;
+    if (given && seen != 7)
+        snow_notify(context,
+                    "its axes MAPC, MAPR, MAPS are %d, %d and %d; they are "
+                    "taken as 1, 2 and 3",
+                    (int)whole(header, 17), (int)whole(header, 18),
+                    (int)whole(header, 19));
 }
 
 /* ORIGIN is used if given, otherwise the grid point of the first voxel. */
@@ -190,13 +217,32 @@ static void place_origin(const mrc_header *header, snow_volume_info *info) {
     }
 }
 
+/* An axis below 0 runs from the cell's end, as IMOD has it for rows from the
+ * top (MAPR -2): the volume stays where it is. */
+static void turn_axes(const mrc_header *header, const int order[3],
+                      snow_volume_info *info) {
+    for (int j = 0; j < 3; j++)
+        for (int i = 0; i < 3 && whole(header, 17 + j) == -order[j] - 1; i++) {
+            double *row = info->matrix[i];
+            row[3] += row[j] * (double)(info->dims[j] - 1);
+            row[j] = 0 - row[j];
+        }
+}
+
 /* An invalid cell is common in such files; the voxels are usable even so. */
 static void set_matrix(snow_context *context, const mrc_header *header,
                        const snow_volume_options *options, const int order[3],
                        snow_volume_info *info) {
     double axes[3][3];
-    if (cell_axes(header, axes)) {
+    if (cell_axes(header, order, axes)) {
         memcpy(info->unit, "angstrom", sizeof "angstrom");
+        if (whole(header, 8) <= 0 || whole(header, 9) <= 0 ||
+            whole(header, 10) <= 0)
+            snow_notify(context,
+                        "its number of intervals MX, MY or MZ is missing; the "
+                        "unit cell is taken to be as large as the volume");
+        if (real(header, 13) == 0 && !snow_spacing_given(options))
+            snow_notify(context, SNOW_WIDTH_IS_DISTANCE, axes[0][0]);
     } else {
         if (!snow_spacing_given(options))
             snow_notify(context,
@@ -209,6 +255,7 @@ static void set_matrix(snow_context *context, const mrc_header *header,
         for (int j = 0; j < 3; j++)
             info->matrix[i][j] = axes[i][order[j]];
     place_origin(header, info);
+    turn_axes(header, order, info);
 }
 
 static snow_status parse_header(snow_context *context, const mrc_header *header,
@@ -216,7 +263,7 @@ static snow_status parse_header(snow_context *context, const mrc_header *header,
                                 snow_volume_info *info, snow_array *array,
                                 uint64_t *extended) {
     int order[3];
-    if (!is_plausible(header))
+    if (!has_mode(header))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "is not an MRC file: its sizes or mode are invalid; "
                          "check the name, or get it again");
@@ -234,10 +281,7 @@ static snow_status parse_header(snow_context *context, const mrc_header *header,
                          "voxels of MRC mode %d are not supported; modes 0, 1, "
                          "2, 6 and 12 are, so convert it to one of them",
                          (int)whole(header, 4));
-    if (!parse_order(header, order))
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "its axes MAPC, MAPR, MAPS are not 1, 2 and 3 in some "
-                         "order; correct the header");
+    parse_order(context, header, order);
     if (whole(header, 24) < 0)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "its extended header has %d bytes; correct NSYMBT",
