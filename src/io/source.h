@@ -45,13 +45,20 @@ snow_status snow_source_open_with(snow_context *context, const char *name,
                                   snow_source **out);
 
 /* Opens the file `name`, given by the header that `source` reads: relative to
- * its folder, or absolute. Rejected for sources without siblings, and if it is
- * not a regular file. The _as_is variant leaves gzip packed, for headers that
- * state whether their data are packed. */
-snow_status snow_source_open_sibling(const snow_source *source,
-                                     const char *name, snow_source **out);
-snow_status snow_source_open_sibling_as_is(const snow_source *source,
+ * its folder, or absolute; where nothing is there, with slashes for
+ * backslashes, else the file of that last name beside the header, with a note.
+ * Rejected for sources without siblings, and if it is not a regular file. The
+ * _as_is variant leaves gzip packed, for headers that state whether their data
+ * are packed. */
+snow_status snow_source_open_sibling(snow_source *source, const char *name,
+                                     snow_source **out);
+snow_status snow_source_open_sibling_as_is(snow_source *source,
                                            const char *name, snow_source **out);
+
+/* The path of that file, in a block that the caller releases; of a name of
+ * which only the first `length` letters are the file's. */
+snow_status snow_source_find_named(snow_source *source, const char *name,
+                                   size_t length, char **out);
 
 /* Whether there is a file whose name the reader has made up, beside that of
  * `source`.  Errors: as above, and a look-up that fails (io/lookup.h). */

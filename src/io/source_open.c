@@ -238,21 +238,92 @@ snow_status snow_source_look_for_sibling(const snow_source *source,
     return status;
 }
 
-static snow_status open_beside(const snow_source *source, const char *name,
+/* The path beside the header that a changed copy of the first `length` letters
+ * of a name leads to, with the letters behind them; *out stays NULL if no file
+ * is there. */
+static snow_status look_at(const snow_source *source, const char *file,
+                           const char *rest, char **out) {
+    char *path = NULL, *all;
+    mode_t mode = 0;
+    SNOW_TRY(snow_source_path_beside(source, file, &path));
+    snow_status status = snow_look_for(source->context, path, &mode);
+    if (status != SNOW_STATUS_OK || !mode || S_ISDIR(mode)) {
+        snow_release(source->context, path);
+        return status;
+    }
+    const size_t length = strlen(path), more = strlen(rest) + 1;
+    all = snow_allocate(source->context, length + more);
+    if (all) {
+        memcpy(all, path, length);
+        memcpy(all + length, rest, more);
+    }
+    snow_release(source->context, path);
+    *out = all;
+    return all ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+}
+
+/* As look_at, in the order in which a name is tried: as it is, with slashes for
+ * the backslashes of Windows, and alone, for a header that was moved. */
+static snow_status look_for_moved(const snow_source *source, char *file,
+                                  const char *rest, int *tries, char **out) {
+    snow_status status = look_at(source, file, rest, out);
+    *tries = 0;
+    if (status != SNOW_STATUS_OK || *out || !strpbrk(file, "/\\"))
+        return status;
+    for (char *at = file; *at; at++)
+        if (*at == '\\')
+            *at = '/';
+    for (*tries = 1; *tries < 3 && status == SNOW_STATUS_OK && !*out;
+         ++*tries) {
+        const char *slash = *tries == 2 ? strrchr(file, '/') : NULL;
+        const char *name = slash ? slash + 1 : file;
+        status = *name ? look_at(source, name, rest, out) : SNOW_STATUS_OK;
+    }
+    return status;
+}
+
+snow_status snow_source_find_named(snow_source *source, const char *name,
+                                   size_t length, char **out) {
+    snow_context *context = source->context;
+    char *path = NULL;
+    int tries = 0;
+    /* The usual refusals come first, and the usual path where nothing is. */
+    SNOW_TRY(snow_source_path_beside(source, name, out));
+    char *file = snow_allocate(context, length + 1);
+    snow_status status = file ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+    if (file) {
+        memcpy(file, name, length);
+        file[length] = 0;
+        if (length)
+            status = look_for_moved(source, file, name + length, &tries, &path);
+        snow_release(context, file);
+    }
+    if (path || status != SNOW_STATUS_OK) {
+        snow_release(context, *out);
+        *out = path;
+    }
+    if (path && tries && !source->moved)
+        snow_notify(context, "its file \"%.100s\" is not there; %s is taken",
+                    name, path);
+    source->moved = source->moved || (path && tries);
+    return status;
+}
+
+static snow_status open_beside(snow_source *source, const char *name,
                                bool unpack, snow_source **out) {
     char *path = NULL;
-    SNOW_TRY(snow_source_path_beside(source, name, &path));
+    SNOW_TRY(snow_source_find_named(source, name, strlen(name), &path));
     snow_status status = open_path(source->context, path, false, unpack, out);
     snow_release(source->context, path);
     return status;
 }
 
-snow_status snow_source_open_sibling(const snow_source *source,
-                                     const char *name, snow_source **out) {
+snow_status snow_source_open_sibling(snow_source *source, const char *name,
+                                     snow_source **out) {
     return open_beside(source, name, true, out);
 }
 
-snow_status snow_source_open_sibling_as_is(const snow_source *source,
+snow_status snow_source_open_sibling_as_is(snow_source *source,
                                            const char *name,
                                            snow_source **out) {
     return open_beside(source, name, false, out);

@@ -2,6 +2,8 @@
  */
 #include "support/files.h"
 
+#include <sys/stat.h>
+
 #include <math.h>
 
 #define COUNT(table) (sizeof(table) / sizeof *(table))
@@ -466,6 +468,38 @@ static void voxels_may_lie_in_many_files(void **state) {
                          "");
 }
 
+/* Names of Windows and of another machine, each with one note; a file that is
+ * where the name says comes first, and what is in no folder is not looked for.
+ */
+static void headers_that_were_moved_find_their_files(void **state) {
+    support_files *files = *state;
+    char folder[600];
+    snprintf(folder, sizeof folder, "%s/d", files->folder);
+    assert_int_equal(mkdir(folder, 0700), 0);
+    support_write(files, "d/a.raw", sample_voxels(), 24);
+    support_write(files, "b.raw", sample_voxels(), 24);
+    support_write(files, "c1.raw", sample_voxels(), 12);
+    support_write(files, "c2.raw", sample_voxels() + 12, 12);
+    support_write(files, "c\\a.raw", sample_voxels(), 24);
+    support_write(files, "a.raw", "no voxels", 9);
+    static const char *const moved[] = {
+        "d\\a.raw",       ".\\b.raw", "C:\\x\\b.raw",
+        "/nowhere/b.raw", "x/b.raw",  "LIST\nC:/x/c1.raw\nC:/x/c2.raw",
+        "x\\c%d.raw 1 2", "c\\a.raw"};
+    for (size_t i = 0; i < COUNT(moved); i++) {
+        *files->warnings = 0;
+        expect_sample(support_opened(
+            files, write_header(files, header_of("LOCAL", moved[i])), NULL));
+        assert_int_equal(support_warned(files), i + 1 < COUNT(moved));
+        assert_true(!*files->warnings || strstr(files->warnings, "is taken"));
+    }
+    static const char *const gone[] = {"B.RAW", "\"b.raw\"",    "x/c.raw",
+                                       "x/d",   "file://b.raw", "x/"};
+    for (size_t i = 0; i < COUNT(gone); i++)
+        support_bad_file(
+            files, write_header(files, header_of("LOCAL", gone[i])), gone[i]);
+}
+
 static void a_series_that_lies_costs_no_memory(void **state) {
     static const unsigned char slice[200000];
     support_write(*state, "s1.raw", slice, sizeof slice);
@@ -626,6 +660,7 @@ int main(void) {
         SUPPORT_TEST(headers_that_lie_are_refused),
         SUPPORT_TEST(voxels_may_lie_in_another_file),
         SUPPORT_TEST(voxels_may_lie_in_many_files),
+        SUPPORT_TEST(headers_that_were_moved_find_their_files),
         SUPPORT_TEST(a_series_that_lies_costs_no_memory),
         SUPPORT_TEST(a_time_step_is_found_among_files),
         SUPPORT_TEST(voxels_may_have_several_values),

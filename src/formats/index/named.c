@@ -39,6 +39,13 @@ static snow_status open_named(snow_source *source, const char *path,
     return SNOW_STATUS_OK;
 }
 
+/* The letters of a name that are the file's: all before the data set in
+ * "run.h5:/rho", but not before that in "C:/run.vti". */
+static size_t file_length(const char *name) {
+    const char *set = *name && name[1] ? strstr(name + 2, ":/") : NULL;
+    return set ? (size_t)(set - name) : strlen(name);
+}
+
 snow_status snow_volume_open_named(snow_source *source, const char *name,
                                    const snow_volume_options *options,
                                    snow_volume_info *info, snow_volume **out) {
@@ -51,7 +58,7 @@ snow_status snow_volume_open_named(snow_source *source, const char *name,
                          "names a file that names others, %d times in a row; "
                          "open one of them",
                          MOST_DEPTH);
-    SNOW_TRY(snow_source_path_beside(source, name, &path));
+    SNOW_TRY(snow_source_find_named(source, name, file_length(name), &path));
     snow_status status = open_named(source, path, &own, info, out);
     snow_release(context, path);
     return status;

@@ -128,7 +128,7 @@ static char *pair_letters(char *name) {
 
 /* Opens the other file of a pair: same name and case, `wanted` ("hdr" or "img")
  * in place of the other, with .gz or without. */
-static snow_status open_other(const snow_source *source, const char *wanted,
+static snow_status open_other(snow_source *source, const char *wanted,
                               snow_source **out) {
     snow_context *context = snow_source_context(source);
     const char *own = snow_path_name(snow_source_name(source));
