@@ -59,6 +59,8 @@ extern const snow_format snow_format_hdf5;
 extern const snow_format snow_format_netcdf;
 extern const snow_format snow_format_dicom;
 extern const snow_format snow_format_den;
+extern const snow_format snow_format_mgh;
+extern const snow_format snow_format_gipl;
 extern const snow_format snow_format_zarr;
 extern const snow_format snow_format_pvd;
 extern const snow_format snow_format_pvti;

@@ -63,12 +63,20 @@ static snow_status read_parsed(snow_source *source, const nrrd_text *text,
     SNOW_TRY(snow_nrrd_find_files(context, text, &header, &files));
     if (!out && !values.all)
         return snow_nrrd_check_data(source, &header, &files, &region);
+    snow_volume *volume = NULL;
+    snow_volume **made = out ? &volume : NULL;
     SNOW_TRY(values.all ? snow_nrrd_read_values(source, &header, &files,
-                                                options, &values, info, out)
+                                                options, &values, info, made)
                         : snow_nrrd_read_data(source, &header, &files, info,
-                                              &region, out));
-    return text->segments && out ? set_labels(context, text, info, *out)
-                                 : SNOW_STATUS_OK;
+                                              &region, made));
+    snow_status status = text->segments && out
+                             ? set_labels(context, text, info, volume)
+                             : SNOW_STATUS_OK;
+    if (status != SNOW_STATUS_OK)
+        snow_volume_close(volume);
+    else if (out)
+        *out = volume;
+    return status;
 }
 
 /* Owns the text, so that the early returns below leak nothing. */

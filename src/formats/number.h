@@ -1,0 +1,34 @@
+/* formats/number.h - numbers in binary headers, in either byte order. */
+#ifndef SNOW_FORMATS_NUMBER_H
+#define SNOW_FORMATS_NUMBER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+/* A number of `size` bytes, at most 8. */
+static inline uint64_t snow_number_at(const unsigned char *bytes, int size,
+                                      bool big_endian) {
+    uint64_t value = 0;
+    for (int i = 0; i < size; i++)
+        value = value << 8 | bytes[big_endian ? i : size - 1 - i];
+    return value;
+}
+
+static inline double snow_float_at(const unsigned char *bytes,
+                                   bool big_endian) {
+    const uint32_t bits = (uint32_t)snow_number_at(bytes, 4, big_endian);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return (double)value;
+}
+
+static inline double snow_double_at(const unsigned char *bytes,
+                                    bool big_endian) {
+    const uint64_t bits = snow_number_at(bytes, 8, big_endian);
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+#endif
