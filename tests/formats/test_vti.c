@@ -11,6 +11,24 @@
 #define END "</DataArray></PointData></Piece></ImageData></VTKFile>"
 #define BYTES "BgAAAAABAgMEBQ==" /* 6, then 0 to 5 */
 
+#define LZ4 "<VTKFile type=\"ImageData\" compressor=\"vtkLZ4DataCompressor\">"
+#define PIECE(x, y, type, offset)                                         \
+    "<Piece Extent=\"" x " " y " 0 0\"><PointData Scalars=\"a\">"         \
+    "<DataArray type=\"" type "\" Name=\"a\" format=\"appended\" offset=" \
+    "\"" offset "\"/></PointData></Piece>"
+/* 4 x 2 points, counted from 0, in two pieces of 2 x 2 and one of none. */
+#define PIECES(last, type)                                                     \
+    FILE_TAG "<ImageData WholeExtent=\"0 3 0 1 0 0\">"                         \
+             "<Piece Extent=\"0 -1 0 -1 0 -1\"><PointData/></Piece>" PIECE(    \
+                 "0 1", "0 1", "UInt8", "0")                                   \
+                 PIECE("2 3", last, type,                                      \
+                       "12") "</ImageData><AppendedData encoding=\"base64\">_" \
+                             "BAAAAAABBAU=BAAAAAIDBgc="
+#define ENDED "</AppendedData></VTKFile>"
+#define ONES                                                         \
+    "<Piece Extent=\"0 0 0 0 0 0\"/><Piece Extent=\"0 0 0 0 0 0\"/>" \
+    "<Piece Extent=\"0 0 0 0 0 0\"/>"
+
 static snow_volume *opened(support_files *files, const char *text,
                            const snow_volume_options *options) {
     return support_opened(files, support_write_text(files, "a.vti", text),
@@ -73,6 +91,34 @@ static void appended_arrays_lie_at_their_offsets(void **state) {
     expect_counting(opened(files, text, NULL));
 }
 
+static void pieces_are_joined(void **state) {
+    support_files *files = *state;
+    const snow_volume_options box = {.size = sizeof box, .crop = {{1, 3}}};
+    static const char text[] = PIECES("0 1", "UInt8") ENDED;
+    snow_volume *volume = opened(files, text, NULL);
+    for (int i = 0; i < 8; i++)
+        assert_int_equal(((const uint8_t *)snow_volume_voxels(volume))[i], i);
+    snow_volume_close(volume);
+    volume = opened(files, text, &box);
+    assert_memory_equal(snow_volume_voxels(volume), "\1\2\5\6", 4);
+    snow_volume_close(volume);
+    assert_string_equal(files->warnings, "");
+}
+
+static void blocks_of_lz4_are_unpacked(void **state) {
+    support_files *files = *state;
+#if SNOW_HAVE_LZ4
+    expect_counting(
+        opened(files,
+               LZ4 GRID ARRAY(
+                   "a", "binary") "AQAAAAYAAAAAAAAABwAAAA==YAABAgMEBQ==" END,
+               NULL));
+#else
+    support_bad_file(files, support_write_text(files, "a.vti", LZ4 GRID END),
+                     "liblz4-dev");
+#endif
+}
+
 static void what_is_no_image_is_refused(void **state) {
     support_files *files = *state;
     static const char *const cases[][2] = {
@@ -82,8 +128,29 @@ static void what_is_no_image_is_refused(void **state) {
         {FILE_TAG, "XML is damaged"},
         {FILE_TAG "</VTKFile>", "no array"},
         {"<!DOCTYPE a>" FILE_TAG "</VTKFile>", "document type"},
-        {"<VTKFile type=\"ImageData\" compressor=\"vtkLZ4DataCompressor\"/>",
-         "zlib"},
+        {"<VTKFile type=\"ImageData\" compressor=\"vtkLZMADataCompressor\"/>",
+         "neither by zlib nor LZ4"},
+        {LZ4 GRID ARRAY("a",
+                        "binary") "AQAAAAYAAAAAAAAABwAAAA==cAABAgMEBQ==" END,
+         "data are invalid"},
+        {LZ4 GRID ARRAY("a",
+                        "binary") "AQAAAAYAAAAAAAAACQAAAA==YAABAgMEBQ==" END,
+         ""},
+        {LZ4 GRID ARRAY("a", "binary") "AQAAAAYAAAAAAAAAAAAAAA==" END,
+         "larger than the file"},
+        {LZ4 GRID ARRAY("a",
+                        "binary") "AQAAAAAAAEAAAAAABwAAAA==YAABAgMEBQ==" END,
+         "larger than the file"},
+        {PIECES("0 1", "UInt8") "</AppendedData>", "damaged"},
+        {PIECES("0 1", "Int8") ENDED, "piece 1 (counted from 0) has voxels of"},
+        {PIECES("0 2", "UInt8") ENDED, "outside"},
+        {FILE_TAG
+         "<ImageData WholeExtent=\"0 1 0 0 0 0\">" ONES ONES ONES ONES ONES ONES
+         "</ImageData></VTKFile>",
+         "pieces that overlap"},
+        {FILE_TAG "<ImageData WholeExtent=\"0 1 0 0 0 0\">" ONES
+                  "</ImageData></VTKFile>",
+         "has no array"},
         {FILE_TAG "<ImageData/></VTKFile>", "WholeExtent"},
         {FILE_TAG "<ImageData WholeExtent=\"1 0 0 0 0 0\"/></VTKFile>",
          "WholeExtent"},
@@ -204,6 +271,8 @@ int main(void) {
         SUPPORT_TEST(text_and_base64_are_read_in_place),
         SUPPORT_TEST(the_scalars_of_the_file_come_before_others),
         SUPPORT_TEST(appended_arrays_lie_at_their_offsets),
+        SUPPORT_TEST(pieces_are_joined),
+        SUPPORT_TEST(blocks_of_lz4_are_unpacked),
         SUPPORT_TEST(what_is_no_image_is_refused),
         SUPPORT_TEST(tags_that_cross_or_have_no_end_are_refused),
         SUPPORT_TEST(bytes_after_the_last_tag_cause_a_note),

@@ -36,7 +36,7 @@ for name, content in (
 # FreeSurfer, whose y goes down and z to the front.
 oracle.put("b.mgh", whole[:28] + b"\0\0" + whole[30:])
 turn = nibabel.load("b.mgh").affine @ np.diag([1, -1, -1, 1])
-turn[1:, 3] = -nibabel.load("b.mgh").affine[1:, 3]
+turn[1:3, 3] = -nibabel.load("b.mgh").affine[1:3, 3]
 oracle.expect("b.mgh", oracle.sample("f4", (50, 1, 1)).T, turn)
 oracle.says("no place", "b.mgh", "no valid place")
 oracle.refuse_cut("b.mgh", (0, 100, 284, 300), "cut.mgh")

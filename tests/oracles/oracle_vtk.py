@@ -1,4 +1,6 @@
 """Legacy VTK files and VTI beside VTK, whose writers and readers are used."""
+import re
+
 import oracle
 from oracle import np
 
@@ -57,7 +59,8 @@ def write_vti(grid, path, mode, compressor, header, big):
         writer.SetDataModeToAppended()
         writer.SetEncodeAppendedData(mode == "appended base64")
     if compressor:
-        writer.SetCompressor(vtk.vtkZLibDataCompressor())
+        writer.SetCompressor(vtk.vtkLZ4DataCompressor() if compressor == "lz4"
+                             else vtk.vtkZLibDataCompressor())
         writer.SetBlockSize(4096)
     else:
         writer.SetCompressor(None)
@@ -100,6 +103,49 @@ for n, kind in enumerate(TYPES):
         add(grid, "a", a, scalars=True)
         write_vti(grid, "a.vti", mode, True, 32, False)
         oracle.expect("a.vti", a, matrix_of(grid), name=f"{kind} {mode}")
+
+if oracle.library("lz4"):
+    for mode in MODES[1:]:
+        grid = image(b.shape)
+        add(grid, "before", oracle.sample("u1", b.shape))
+        add(grid, "wanted", np.round(b), scalars=True)
+        write_vti(grid, "a.vti", mode, "lz4", 32, False)
+        oracle.expect("a.vti", np.round(b), matrix_of(grid), name=f"{mode} lz4")
+
+# Several pieces in one file, whose texts VTK writes and whose whole it reads.
+for cells in (False, True):
+    for mode in oracle.few(("ascii", "binary", "lz4"), 3, cells):
+        whole = oracle.sample("f4")
+        body, more = "", 0 if cells else 1
+        for z in ((0, 2), (2, 7 - more)):
+            for y in ((0, 4), (4, 6 - more)):
+                part = whole[z[0]:z[1] + more, y[0]:y[1] + more]
+                grid = image(extent=(2, 0, 0))
+                grid.SetExtent(2, 7 - more, *y, *z)
+                add(grid, "a", part, cells, True)
+                writer = vtk.vtkXMLImageDataWriter()
+                writer.SetInputData(grid)
+                writer.SetWriteToOutputString(True)
+                writer.SetDataMode(0 if mode == "ascii" else 1)
+                writer.SetCompressor(vtk.vtkLZ4DataCompressor()
+                                     if mode == "lz4" else None)
+                assert writer.Write()
+                text = writer.GetOutputString()
+                first, last = text.index("<Piece"), text.rindex("</Piece>") + 8
+                body += text[first:last] + "\n"
+        grid.SetExtent(2, 7 - more, 0, 6 - more, 0, 7 - more)
+        extent = " ".join(map(str, grid.GetExtent()))
+        head = re.sub('WholeExtent="[^"]*"', f'WholeExtent="{extent}"',
+                      text[:first])
+        oracle.put("p.vti", head + body + text[last:])
+        reader = vtk.vtkXMLImageDataReader()
+        reader.SetFileName("p.vti")
+        reader.Update()
+        data = reader.GetOutput()
+        data = data.GetCellData() if cells else data.GetPointData()
+        values = vtk_to_numpy(data.GetArray("a")).reshape(whole.shape)
+        oracle.expect("p.vti", values, matrix_of(grid, cells),
+                      name=f"pieces {mode} cells {cells}")
 
 # Vectors by channel; values of cells.
 a = oracle.sample("f8", (7, 6, 5, 3))

@@ -51,11 +51,27 @@ snow_status snow_index_read(snow_source *source, const index_list *list,
                             const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out);
 
-/* Reads files `first` .. `end` - 1, which lie side by side on one grid. */
-snow_status snow_mosaic_read(snow_source *source, const index_list *list,
-                             size_t first, size_t end,
+/* Parts that lie side by side on one grid: how one is called, and opened. */
+#define INDEX_NAME_BYTES 256
+typedef struct index_parts {
+    snow_context *context;
+    size_t count; /* at least 1 */
+    void *user;
+    void (*name)(void *user, size_t index, char name[INDEX_NAME_BYTES]);
+    snow_status (*open)(void *user, size_t index,
+                        const snow_volume_options *options,
+                        snow_volume_info *info, snow_volume **out);
+} index_parts;
+
+snow_status snow_mosaic_read(const index_parts *parts,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out);
+
+/* The same of files `first` .. `end` - 1. */
+snow_status snow_mosaic_read_named(snow_source *source, const index_list *list,
+                                   size_t first, size_t end,
+                                   const snow_volume_options *options,
+                                   snow_volume_info *info, snow_volume **out);
 
 /* Copies the part of `from`, whose first voxel is voxel `at` of the whole, that
  * lies in `to`, which begins at voxel `first` of the whole. */

@@ -72,7 +72,7 @@ snow_status snow_index_read(snow_source *source, const index_list *list,
         end - first == 1
             ? snow_volume_open_named(source, snow_index_name(list, first), &own,
                                      info, out)
-            : snow_mosaic_read(source, list, first, end, &own, info, out);
+            : snow_mosaic_read_named(source, list, first, end, &own, info, out);
     SNOW_TRY(read_files);
     info->format = format;
     info->times = series.times;

@@ -8,6 +8,7 @@
 #include "formats/index/index.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,20 +21,20 @@ typedef struct part {
 } part;
 
 typedef struct mosaic {
-    snow_source *source;
-    const index_list *list;
-    size_t begin, count; /* the files of the list */
+    const index_parts *from;
     part *parts;
     int64_t first[3]; /* the whole's first voxel, counted as those of parts */
 } mosaic;
 
 static snow_status fail_mosaic(const mosaic *m, size_t index,
                                const char *what) {
-    return snow_fail(m->list->context, SNOW_STATUS_BAD_INPUT,
+    char names[2][INDEX_NAME_BYTES];
+    m->from->name(m->from->user, index, names[0]);
+    m->from->name(m->from->user, 0, names[1]);
+    return snow_fail(m->from->context, SNOW_STATUS_BAD_INPUT,
                      "%s has %s than %s, so they are no parts of one grid; "
                      "open one of them",
-                     snow_index_name(m->list, m->begin + index), what,
-                     snow_index_name(m->list, m->begin));
+                     names[0], what, names[1]);
 }
 
 /* Returns whether the voxels have the same size and direction. */
@@ -72,9 +73,7 @@ static snow_status look(const mosaic *m, size_t index,
                         const snow_volume_options *options,
                         snow_volume_info *grid) {
     snow_volume_info info;
-    SNOW_TRY(snow_volume_open_named(m->source,
-                                    snow_index_name(m->list, m->begin + index),
-                                    options, &info, NULL));
+    SNOW_TRY(m->from->open(m->from->user, index, options, &info, NULL));
     if (!index)
         *grid = info;
     if (info.type != grid->type)
@@ -90,10 +89,10 @@ static snow_status look(const mosaic *m, size_t index,
 static snow_status look_at_all(const mosaic *m,
                                const snow_volume_options *options,
                                snow_volume_info *grid) {
-    snow_context *context = m->list->context;
+    snow_context *context = m->from->context;
     snow_warning_fn *warning = context->warning;
     snow_status status = SNOW_STATUS_OK;
-    for (size_t i = 0; i < m->count && status == SNOW_STATUS_OK; i++) {
+    for (size_t i = 0; i < m->from->count && status == SNOW_STATUS_OK; i++) {
         status = look(m, i, options, grid);
         context->warning = NULL;
     }
@@ -109,7 +108,7 @@ static snow_status measure(mosaic *m, snow_volume_info *info) {
         m->first[i] = INT64_MAX;
         end[i] = INT64_MIN;
     }
-    for (size_t n = 0; n < m->count; n++) {
+    for (size_t n = 0; n < m->from->count; n++) {
         const part *p = &m->parts[n];
         for (int i = 0; i < 3; i++) {
             if (p->first[i] < m->first[i])
@@ -127,14 +126,13 @@ static snow_status measure(mosaic *m, snow_volume_info *info) {
             info->matrix[i][3] += info->matrix[i][j] * (double)m->first[j];
     }
     if (all > 64 * voxels + 0x1p20)
-        return snow_fail(m->list->context, SNOW_STATUS_BAD_INPUT,
-                         "its %zu files are far apart on their grid; open one "
+        return snow_fail(m->from->context, SNOW_STATUS_BAD_INPUT,
+                         "its %zu parts are far apart on their grid; open one "
                          "of them",
-                         m->count);
+                         m->from->count);
     if (all > voxels)
-        snow_notify(m->list->context,
-                    "%.0f of %.0f voxels are in no file; "
-                    "they are %s",
+        snow_notify(m->from->context,
+                    "%.0f of %.0f voxels are in none of the parts; they are %s",
                     all - voxels, all,
                     info->type >= SNOW_TYPE_FLOAT32 ? "transparent" : "0");
     return SNOW_STATUS_OK;
@@ -196,9 +194,7 @@ static snow_status read_part(const mosaic *m, size_t index,
         if (own.crop[i][0] >= own.crop[i][1])
             return SNOW_STATUS_OK;
     }
-    SNOW_TRY(snow_volume_open_named(m->source,
-                                    snow_index_name(m->list, m->begin + index),
-                                    &own, &info, &from));
+    SNOW_TRY(m->from->open(m->from->user, index, &own, &info, &from));
     if (info.type == to->info.type)
         snow_mosaic_copy(from, at, first, to);
     snow_volume_close(from);
@@ -208,14 +204,14 @@ static snow_status read_part(const mosaic *m, size_t index,
 static snow_status read_parts(const mosaic *m,
                               const snow_volume_options *options,
                               const int64_t first[3], snow_volume *to) {
-    snow_context *context = m->list->context;
+    snow_context *context = m->from->context;
     snow_warning_fn *warning = context->warning;
     snow_status status = SNOW_STATUS_OK;
     context->warning = NULL;
     clear(to);
-    for (size_t i = 0; i < m->count && status == SNOW_STATUS_OK; i++) {
-        snow_monitor_part whole =
-            snow_monitor_divide(context->monitor, (double)i, (double)m->count);
+    for (size_t i = 0; i < m->from->count && status == SNOW_STATUS_OK; i++) {
+        snow_monitor_part whole = snow_monitor_divide(
+            context->monitor, (double)i, (double)m->from->count);
         status = read_part(m, i, options, first, to);
         snow_monitor_whole(context->monitor, whole);
     }
@@ -225,7 +221,7 @@ static snow_status read_parts(const mosaic *m,
 
 static snow_status read_box(mosaic *m, const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out) {
-    snow_context *context = m->list->context;
+    snow_context *context = m->from->context;
     snow_volume_options own = *options;
     snow_region box;
     snow_volume *volume;
@@ -248,21 +244,57 @@ static snow_status read_box(mosaic *m, const snow_volume_options *options,
     return SNOW_STATUS_OK;
 }
 
+snow_status snow_mosaic_read(const index_parts *parts,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    mosaic m = {.from = parts};
+    m.parts =
+        snow_allocate_array(parts->context, parts->count, sizeof *m.parts);
+    if (!m.parts)
+        return SNOW_STATUS_NO_MEMORY;
+    snow_status status = read_box(&m, options, info, out);
+    snow_release(parts->context, m.parts);
+    return status;
+}
+
+/* --- files of a list ------------------------------------------------------ */
+
+typedef struct named_parts {
+    snow_source *source;
+    const index_list *list;
+    size_t begin, count; /* the files of the list */
+} named_parts;
+
+static void name_of(void *user, size_t index, char name[INDEX_NAME_BYTES]) {
+    const named_parts *n = user;
+    snprintf(name, INDEX_NAME_BYTES, "%s",
+             snow_index_name(n->list, n->begin + index));
+}
+
+static snow_status open_named(void *user, size_t index,
+                              const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    const named_parts *n = user;
+    return snow_volume_open_named(n->source,
+                                  snow_index_name(n->list, n->begin + index),
+                                  options, info, out);
+}
+
 static int by_name(const void *a, const void *b) {
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
 /* A list that names one file 200,000 times would open it as often. */
-static snow_status check_names(const mosaic *m) {
-    snow_context *context = m->list->context;
-    const char **names = snow_allocate_array(context, m->count, sizeof *names);
+static snow_status check_names(const named_parts *n) {
+    snow_context *context = n->list->context;
+    const char **names = snow_allocate_array(context, n->count, sizeof *names);
     snow_status status = SNOW_STATUS_OK;
     if (!names)
         return SNOW_STATUS_NO_MEMORY;
-    for (size_t i = 0; i < m->count; i++)
-        names[i] = snow_index_name(m->list, m->begin + i);
-    qsort(names, m->count, sizeof *names, by_name);
-    for (size_t i = 1; i < m->count && status == SNOW_STATUS_OK; i++)
+    for (size_t i = 0; i < n->count; i++)
+        names[i] = snow_index_name(n->list, n->begin + i);
+    qsort(names, n->count, sizeof *names, by_name);
+    for (size_t i = 1; i < n->count && status == SNOW_STATUS_OK; i++)
         if (!strcmp(names[i], names[i - 1]))
             status = snow_fail(context, SNOW_STATUS_BAD_INPUT,
                                "names %s more than once, but each part of a "
@@ -273,18 +305,13 @@ static snow_status check_names(const mosaic *m) {
     return status;
 }
 
-snow_status snow_mosaic_read(snow_source *source, const index_list *list,
-                             size_t first, size_t end,
-                             const snow_volume_options *options,
-                             snow_volume_info *info, snow_volume **out) {
-    mosaic m = {
-        .source = source, .list = list, .begin = first, .count = end - first};
-    m.parts = snow_allocate_array(list->context, m.count, sizeof *m.parts);
-    if (!m.parts)
-        return SNOW_STATUS_NO_MEMORY;
-    snow_status status = check_names(&m);
-    if (status == SNOW_STATUS_OK)
-        status = read_box(&m, options, info, out);
-    snow_release(list->context, m.parts);
-    return status;
+snow_status snow_mosaic_read_named(snow_source *source, const index_list *list,
+                                   size_t first, size_t end,
+                                   const snow_volume_options *options,
+                                   snow_volume_info *info, snow_volume **out) {
+    named_parts named = {source, list, first, end - first};
+    const index_parts parts = {list->context, named.count, &named, name_of,
+                               open_named};
+    SNOW_TRY(check_names(&named));
+    return snow_mosaic_read(&parts, options, info, out);
 }

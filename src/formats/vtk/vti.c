@@ -6,14 +6,15 @@
 #include <math.h>
 #include <string.h>
 
-/* Reads the values; the source stands at its first byte. */
-static snow_status read_values(snow_source *source, vti_header *header,
-                               const vti_small *small,
-                               const snow_volume_options *options,
-                               snow_volume_info *info, snow_volume **out) {
+snow_status snow_vti_read_values(snow_source *source, vti_header *header,
+                                 const vti_small *small,
+                                 const snow_volume_options *options,
+                                 snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
     int64_t channel;
     SNOW_TRY(snow_vti_read_header(source, options, header));
+    if (header->in_pieces)
+        return SNOW_STATUS_OK;
     memcpy(header->grid.coordinates, small->coordinates,
            sizeof small->coordinates);
     SNOW_TRY(snow_vtk_describe(context, &header->grid, &header->array, options,
@@ -43,11 +44,12 @@ static snow_status read_beside(snow_source *source, snow_seekable *bytes,
                                snow_volume_info *info, snow_volume **out) {
     snow_source *held = NULL;
     if (!bytes || !snow_seekable_held(bytes))
-        return read_values(source, header, small, options, info, out);
+        return snow_vti_read_values(source, header, small, options, info, out);
     SNOW_TRY(snow_source_open_memory(
         snow_source_context(source), snow_source_name(source),
         snow_seekable_held(bytes), (size_t)snow_seekable_size(bytes), &held));
-    snow_status status = read_values(held, header, small, options, info, out);
+    snow_status status =
+        snow_vti_read_values(held, header, small, options, info, out);
     snow_source_close(held);
     return status;
 }
@@ -70,7 +72,10 @@ static snow_status read_xml(snow_source *source, bool rectilinear,
     if (status == SNOW_STATUS_OK)
         status = read_beside(source, bytes, &header, &small, options, info,
                              out ? &volume : NULL);
-    if (status == SNOW_STATUS_OK && bytes && out)
+    if (status == SNOW_STATUS_OK && header.in_pieces)
+        status = snow_vti_read_pieces(source, bytes, &header, &small, options,
+                                      info, out ? &volume : NULL);
+    else if (status == SNOW_STATUS_OK && bytes && out)
         status = snow_vti_check_tail(source, bytes, &header);
     if (status == SNOW_STATUS_OK && out)
         *out = volume;

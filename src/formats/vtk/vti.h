@@ -5,12 +5,14 @@
  *   vti_header.c  the XML text up to the requested array -> vti_header
  *   vti_data.c    the array's bytes -> voxels
  *   vti_tail.c    the tags behind them
+ *   vti_pieces.c  the same of each piece, where there are several
  *
  * After "VTK XML Formats" (docs.vtk.org) and vtkXMLDataParser. */
 #ifndef SNOW_FORMATS_VTK_VTI_H
 #define SNOW_FORMATS_VTK_VTI_H
 
 #include "formats/vtk/vtk.h"
+#include "io/filters/filters.h"
 #include "io/seekable.h"
 
 typedef enum vti_form {
@@ -26,10 +28,13 @@ typedef struct vti_header {
     vti_form form;
     uint64_t numbers; /* where they begin, or appended data do */
     uint64_t offset;  /* of appended data */
-    bool raw;        /* appended data are not base64 */
+    bool raw;         /* appended data are not base64 */
     bool big_endian;
     int count_bytes; /* size of the counts before the data: 4 or 8 */
-    bool packed;     /* as blocks of zlib */
+    bool packed;     /* as blocks of zlib, or those of: */
+    snow_unpack_block_fn *unpack; /* NULL: zlib */
+    bool in_pieces; /* the first piece is not the whole: there is no array */
+    bool one_piece; /* set before: the first piece is all that is wanted */
 } vti_header;
 
 /* An attribute's value, NULL if it is missing; "x0 x1 y0 y1 z0 z1", the first
@@ -76,8 +81,23 @@ snow_status snow_vti_read_data(snow_source *source, const vti_header *header,
                                int64_t channel, snow_volume_info *info,
                                snow_volume **out);
 
-/* Checks the tags behind an array that was read.  Errors: SNOW_STATUS_BAD_INPUT,
- * SNOW_STATUS_NO_MEMORY. */
+/* Reads the values, from the source's beginning; nothing where the header says
+ * that they are in pieces. */
+snow_status snow_vti_read_values(snow_source *source, vti_header *header,
+                                 const vti_small *small,
+                                 const snow_volume_options *options,
+                                 snow_volume_info *info, snow_volume **out);
+
+/* Makes the volume of the pieces of a file, whose grid `whole` has.  Errors:
+ * SNOW_STATUS_BAD_INPUT, SNOW_STATUS_NO_MEMORY, those of reading. */
+snow_status snow_vti_read_pieces(snow_source *source, snow_seekable *bytes,
+                                 const vti_header *whole,
+                                 const vti_small *small,
+                                 const snow_volume_options *options,
+                                 snow_volume_info *info, snow_volume **out);
+
+/* Checks the tags behind an array that was read.  Errors:
+ * SNOW_STATUS_BAD_INPUT, SNOW_STATUS_NO_MEMORY. */
 snow_status snow_vti_check_tail(snow_source *source, snow_seekable *bytes,
                                 const vti_header *header);
 

@@ -57,7 +57,7 @@ static snow_status take_sizes(snow_source *source, const vti_header *header,
 /* From here on the source delivers decompressed bytes. */
 static snow_status unpack(snow_source *source, const vti_header *header) {
     uint64_t packed = 0;
-    snow_blocks blocks = {0};
+    snow_blocks blocks = {.unpack = header->unpack};
     SNOW_TRY(take_count(source, header, &blocks.count));
     SNOW_TRY(take_count(source, header, &blocks.whole));
     SNOW_TRY(take_count(source, header, &blocks.last));

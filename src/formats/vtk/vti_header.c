@@ -8,6 +8,7 @@
  * its scalars, otherwise the first; arrays of points have priority over those
  * of cells. */
 #include "formats/features.h"
+#include "formats/lz4.h"
 #include "formats/vtk/vti.h"
 
 #if SNOW_HAVE_EXPAT
@@ -30,6 +31,7 @@ typedef struct vti_text {
     bool done;          /* ... successfully, at the data */
     uint64_t end;       /* end of the tag before them, in bytes of the text */
     bool file, grid, piece; /* these elements were found */
+    bool ignored;           /* inside a later piece */
     bool points, cells;     /* inside PointData, CellData */
     bool any_points;        /* arrays of points were found */
     char scalars[256];      /* the name of the section's scalars */
@@ -100,6 +102,8 @@ bool snow_vti_take_extent(const char *value, int64_t first[3],
     return true;
 }
 
+static const char lz4_name[] = "vtkLZ4DataCompressor";
+
 void snow_vti_file_form(vti_header *header, const char **attributes) {
     const char *order = snow_vti_attribute(attributes, "byte_order");
     const char *count = snow_vti_attribute(attributes, "header_type");
@@ -107,6 +111,8 @@ void snow_vti_file_form(vti_header *header, const char **attributes) {
     header->big_endian = order && !strcmp(order, "BigEndian");
     header->count_bytes = count && !strcmp(count, "UInt64") ? 8 : 4;
     header->packed = compressor && *compressor;
+    if (header->packed && !strcmp(compressor, lz4_name))
+        header->unpack = snow_lz4_unpack;
 }
 
 static void begin_file(vti_text *text, const char **attributes) {
@@ -118,10 +124,14 @@ static void begin_file(vti_text *text, const char **attributes) {
     snow_vti_file_form(text->header, attributes);
     if (!type || strcmp(type, wanted) != 0)
         fail_header(text, snow_vtk_other(type));
-    else if (text->header->packed &&
-             strcmp(compressor, "vtkZLibDataCompressor") != 0)
-        fail_header(text, "its data are not compressed by zlib; write it again "
-                          "with vtkZLibDataCompressor or without compression");
+    else if (text->header->unpack) {
+        if (snow_lz4_need(text->context) != SNOW_STATUS_OK)
+            stop(text, SNOW_STATUS_BAD_INPUT);
+    } else if (text->header->packed &&
+               strcmp(compressor, "vtkZLibDataCompressor") != 0)
+        fail_header(text, "its data are compressed neither by zlib nor LZ4; "
+                          "write it again with vtkZLibDataCompressor or "
+                          "without compression");
 }
 
 static void begin_grid(vti_text *text, const char **attributes) {
@@ -142,28 +152,59 @@ static void begin_grid(vti_text *text, const char **attributes) {
         grid->direction[i / 3][i % 3] = direction[i];
 }
 
-/* Accepts only one piece that spans the whole: in a file of several each would
- * hold a part. */
+/* The text ended before any usable data. */
+static snow_status fail_unfound(const vti_text *text) {
+    if (!*text->seen)
+        return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
+                         "has no array of values; write one with the image");
+    if (text->options->dataset)
+        return snow_fail(text->context, SNOW_STATUS_BAD_USAGE,
+                         "--dataset %.100s: there is no such array; the file "
+                         "has %s",
+                         text->options->dataset, text->seen);
+    return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
+                     "lacks the array that it calls its scalars; choose one "
+                     "with --dataset: %s",
+                     text->seen);
+}
+
+/* A piece that does not span the whole is one of several, each of which is read
+ * by itself; later ones are not looked at then. */
 static void begin_piece(vti_text *text, const char **attributes) {
-    const vtk_grid *grid = &text->header->grid;
+    vti_header *header = text->header;
+    vtk_grid *grid = &header->grid;
     int64_t first[3], points[3];
-    bool whole = text->grid && !text->piece &&
-                 snow_vti_take_extent(snow_vti_attribute(attributes, "Extent"),
-                                      first, points) &&
-                 !memcmp(first, grid->first, sizeof first) &&
-                 !memcmp(points, grid->points, sizeof points);
+    text->ignored = text->piece; /* the one before was taken */
+    if (text->ignored) {
+        if (!text->choice)
+            stop(text, fail_unfound(text));
+        return;
+    }
+    const bool valid =
+        text->grid &&
+        snow_vti_take_extent(snow_vti_attribute(attributes, "Extent"), first,
+                             points);
     text->piece = true;
-    if (!whole)
-        fail_header(text,
-                    "has no piece that spans the WholeExtent; write the whole "
-                    "image to one file");
+    if (header->one_piece && valid) {
+        memcpy(grid->first, first, sizeof first);
+        memcpy(grid->points, points, sizeof points);
+    } else if (!valid || memcmp(first, grid->first, sizeof first) != 0 ||
+               memcmp(points, grid->points, sizeof points) != 0) {
+        header->in_pieces = text->grid && !grid->rectilinear;
+        if (header->in_pieces)
+            stop(text, SNOW_STATUS_OK);
+        else
+            fail_header(text,
+                        "has no piece that spans the WholeExtent; write the "
+                        "whole grid to one file");
+    }
 }
 
 static void begin_section(vti_text *text, const char **attributes,
                           bool points) {
     const char *scalars = snow_vti_attribute(attributes, "Scalars");
-    text->points = points;
-    text->cells = !points;
+    text->points = points && !text->ignored;
+    text->cells = !points && !text->ignored;
     *text->scalars = 0;
     if (scalars && strlen(scalars) < sizeof text->scalars)
         memcpy(text->scalars, scalars, strlen(scalars) + 1);
@@ -319,22 +360,6 @@ static snow_status fail_syntax(const vti_text *text) {
         XML_ErrorString(XML_GetErrorCode(text->parser)));
 }
 
-/* The text ended before any usable data. */
-static snow_status fail_unfound(const vti_text *text) {
-    if (!*text->seen)
-        return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
-                         "has no array of values; write one with the image");
-    if (text->options->dataset)
-        return snow_fail(text->context, SNOW_STATUS_BAD_USAGE,
-                         "--dataset %.100s: there is no such array; the file "
-                         "has %s",
-                         text->options->dataset, text->seen);
-    return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
-                     "lacks the array that it calls its scalars; choose one "
-                     "with --dataset: %s",
-                     text->seen);
-}
-
 /* The parser sees bytes before they are consumed; they are consumed only up to
  * the end of the tag before the data. */
 static snow_status feed(snow_source *source, vti_text *text) {
@@ -374,7 +399,9 @@ snow_status snow_vti_read_header(snow_source *source,
     snow_context *context = snow_source_context(source);
     vti_text text = {.context = context, .options = options, .header = header};
     const bool rectilinear = header->grid.rectilinear;
-    *header = (vti_header){.grid = snow_vtk_grid_default()};
+    const bool one_piece = header->one_piece;
+    *header =
+        (vti_header){.grid = snow_vtk_grid_default(), .one_piece = one_piece};
     header->grid.rectilinear = rectilinear;
     text.parser = XML_ParserCreate(NULL);
     if (!text.parser)

@@ -4,14 +4,12 @@
  * chunk: a file with a false size is refused before memory is allocated.
  * Libraries are then called for exactly that many bytes. */
 #include "formats/features.h"
+#include "formats/lz4.h"
 #include "formats/zarr/zarr.h"
 
 #include <limits.h>
 #include <string.h>
 
-#if SNOW_HAVE_LZ4
-#include <lz4.h>
-#endif
 #if SNOW_HAVE_ZSTD
 #include <zstd.h>
 #endif
@@ -121,7 +119,7 @@ static snow_status unpack_zstd(snow_context *context, const char *name,
 static snow_status expect_lz4(snow_context *context, const char *name,
                               const unsigned char *packed, size_t size,
                               uint64_t bytes) {
-#if SNOW_HAVE_LZ4
+    SNOW_TRY(snow_lz4_need(context));
     if (size < 4 || size > INT_MAX)
         return snow_zarr_fail_damaged(context, name,
                                       "is not compressed by lz4");
@@ -130,25 +128,15 @@ static snow_status expect_lz4(snow_context *context, const char *name,
     return given == bytes && bytes <= INT_MAX
                ? SNOW_STATUS_OK
                : snow_zarr_fail_size(context, name, given, bytes);
-#else
-    (void)name, (void)packed, (void)size, (void)bytes;
-    return snow_fail_unbuilt(context, "LZ4", "liblz4-dev");
-#endif
 }
 
 static snow_status unpack_lz4(snow_context *context, const char *name,
                               const unsigned char *packed, size_t size,
                               unsigned char *out, uint64_t bytes) {
-#if SNOW_HAVE_LZ4
-    int got = LZ4_decompress_safe((const char *)packed + 4, (char *)out,
-                                  (int)(size - 4), (int)bytes);
-    if (got >= 0 && (uint64_t)got == bytes)
-        return SNOW_STATUS_OK;
-#else
-    (void)packed, (void)size, (void)out, (void)bytes;
-#endif
-    return snow_zarr_fail_damaged(context, name,
-                                  "cannot be decompressed by lz4");
+    return snow_lz4_unpack(packed + 4, size - 4, out, (size_t)bytes)
+               ? SNOW_STATUS_OK
+               : snow_zarr_fail_damaged(context, name,
+                                        "cannot be decompressed by lz4");
 }
 
 /* --- any ------------------------------------------------------------------ */

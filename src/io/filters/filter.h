@@ -63,12 +63,18 @@ snow_status snow_filter_stage_open_inflate(snow_filter_stage *below,
 snow_status snow_filter_stage_open_base64(snow_filter_stage *below,
                                           snow_filter_stage **out);
 
-/* Consecutive zlib streams, each unpacking to `whole` bytes except the last,
- * which unpacks to `last`; `packed` are their packed sizes. */
+/* Unpacks a block to exactly `bytes` bytes; false if it has not these. */
+typedef bool snow_unpack_block_fn(const void *packed, size_t size, void *out,
+                                  size_t bytes);
+
+/* Consecutive zlib streams, or blocks that `unpack` unpacks to at most 255
+ * times their size, each unpacking to `whole` bytes except the last, which
+ * unpacks to `last`; `packed` are their packed sizes. */
 typedef struct snow_blocks {
     uint64_t count; /* at least 1 */
     uint64_t whole, last;
-    uint64_t *packed; /* from snow_allocate */
+    uint64_t *packed;             /* from snow_allocate */
+    snow_unpack_block_fn *unpack; /* NULL: zlib */
 } snow_blocks;
 
 /* Adds a stage on top that unpacks them, and owns the sizes on success. Rejects

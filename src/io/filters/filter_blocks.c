@@ -1,5 +1,6 @@
 /* io/filters/filter_blocks.c - the filter stage that unpacks a sequence of zlib
- * streams (RFC 1950) of known sizes, as in VTK's XML files.
+ * streams (RFC 1950) of known sizes, as in VTK's XML files, or of blocks that a
+ * function unpacks at once.
  *
  * Since the sizes precede the data, skipped blocks need not be unpacked: a
  * block is skipped by its packed size. */
@@ -7,8 +8,13 @@
 #include "io/source.h"
 #include "io/zlib_memory.h"
 
+#include <string.h>
+
 /* Bytes of a stream besides its data: header, check sum, last bits. */
 #define STREAM_SLACK 64
+
+/* Of LZ4, whose runs grow by 255 bytes for each byte of their length. */
+#define MOST_RATIO ((uint64_t)255)
 
 typedef struct blocks_filter {
     snow_filter_stage filter;
@@ -17,7 +23,8 @@ typedef struct blocks_filter {
     uint64_t next;   /* next block to begin */
     uint64_t packed; /* bytes of the current block not yet consumed */
     uint64_t left;   /* unpacked bytes that it has still to return */
-    bool damaged;    /* a jump failed: the position is unknown */
+    unsigned char *packed_bytes, *bytes; /* of blocks that a function unpacks */
+    bool damaged; /* a jump failed: the position is unknown */
 } blocks_filter;
 
 static uint64_t size_of(const blocks_filter *filter, uint64_t block) {
@@ -91,6 +98,36 @@ static snow_status pull_block(blocks_filter *filter, void *bytes, size_t size,
     return filter->left ? SNOW_STATUS_OK : end_block(filter, answer);
 }
 
+/* Unpacks the current block as a whole. */
+static snow_status unpack_block(blocks_filter *filter) {
+    snow_context *context = filter->filter.context;
+    const size_t size = (size_t)filter->packed;
+    size_t got;
+    SNOW_TRY(SNOW_RESERVE(context, filter->packed_bytes, 0, size));
+    SNOW_TRY(snow_filter_stage_read(filter->filter.below, filter->packed_bytes,
+                                    size, &got));
+    if (got < size)
+        return fail_block(filter, "it ends too early");
+    SNOW_TRY(SNOW_RESERVE(context, filter->bytes, 0, filter->left));
+    filter->packed = 0;
+    return filter->blocks.unpack(filter->packed_bytes, size, filter->bytes,
+                                 (size_t)filter->left)
+               ? SNOW_STATUS_OK
+               : fail_block(filter, "the data are invalid");
+}
+
+/* Copies some bytes of the current block. */
+static snow_status copy_block(blocks_filter *filter, void *bytes, size_t size,
+                              size_t *got) {
+    const uint64_t all = size_of(filter, filter->next - 1);
+    if (filter->packed)
+        SNOW_TRY(unpack_block(filter));
+    *got = size < filter->left ? size : (size_t)filter->left;
+    memcpy(bytes, filter->bytes + (all - filter->left), *got);
+    filter->left -= *got;
+    return SNOW_STATUS_OK;
+}
+
 static snow_status pull_blocks(snow_filter_stage *base, void *bytes,
                                size_t size, size_t *got) {
     blocks_filter *filter = (blocks_filter *)base;
@@ -101,8 +138,13 @@ static snow_status pull_blocks(snow_filter_stage *base, void *bytes,
         filter->left = size_of(filter, filter->next);
         filter->packed = filter->blocks.packed[filter->next];
         filter->next++;
-        inflateReset(&filter->stream);
+        if (!filter->packed)
+            return fail_block(filter, "it is empty");
+        if (!filter->blocks.unpack)
+            inflateReset(&filter->stream);
     }
+    if (filter->blocks.unpack && filter->left)
+        return copy_block(filter, bytes, size, got);
     return filter->left ? pull_block(filter, bytes, size, got) : SNOW_STATUS_OK;
 }
 
@@ -158,8 +200,20 @@ static bool jump_blocks(snow_filter_stage *base, uint64_t count) {
 
 static void end_blocks(snow_filter_stage *base) {
     blocks_filter *filter = (blocks_filter *)base;
-    inflateEnd(&filter->stream);
+    if (!filter->blocks.unpack)
+        inflateEnd(&filter->stream);
+    snow_release(base->context, filter->bytes);
+    snow_release(base->context, filter->packed_bytes);
     snow_release(base->context, filter->blocks.packed);
+}
+
+/* Whole blocks are held, so that none may claim more than its bytes can
+ * hold. */
+static bool may_hold(const snow_blocks *blocks, uint64_t packed) {
+    const uint64_t most =
+        MOST_RATIO * (packed < INT32_MAX ? packed : INT32_MAX);
+    return blocks->last <= most &&
+           (blocks->count == 1 || blocks->whole <= most);
 }
 
 /* Adds up all packed and all unpacked bytes; false if they are impossible. */
@@ -177,7 +231,8 @@ static bool sum_block_sizes(const snow_filter_stage *below,
            snow_mul_u64(blocks->count, STREAM_SLACK, &most) &&
            snow_add_u64(packed, most, &most) &&
            (!snow_mul_u64(most, SNOW_DEFLATE_RATIO, &most) ||
-            *unpacked <= most);
+            *unpacked <= most) &&
+           (!blocks->unpack || may_hold(blocks, packed));
 }
 
 snow_status snow_filter_stage_open_blocks(snow_filter_stage *below,
@@ -194,7 +249,7 @@ snow_status snow_filter_stage_open_blocks(snow_filter_stage *below,
     if (!filter)
         return SNOW_STATUS_NO_MEMORY;
     snow_zlib_use(&filter->stream, below->context);
-    if (inflateInit2(&filter->stream, 15) != Z_OK) {
+    if (!blocks->unpack && inflateInit2(&filter->stream, 15) != Z_OK) {
         snow_release(below->context, filter);
         return SNOW_STATUS_NO_MEMORY; /* snow_allocate set the message */
     }

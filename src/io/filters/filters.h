@@ -10,7 +10,7 @@
  * character that is not; all later calls return the decoded bytes. */
 snow_status snow_source_unpack_base64(snow_source *source);
 
-/* Declares that from here on the bytes are zlib streams of these sizes. The
+/* Declares that from here on the bytes are blocks of these sizes. The
  * sizes belong to the source on success. */
 snow_status snow_source_unpack_blocks(snow_source *source,
                                       const snow_blocks *blocks);
