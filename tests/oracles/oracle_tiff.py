@@ -231,6 +231,22 @@ for axes in ("TZCYX", "TCZYX", "CTZYX", "ZTCYX", "CZTYX", "ZCTYX"):
                           ["--time", t, "--channel", c], unit="um",
                           name=f"OME {axes} {t} {c}")
 
+# Lengths in several units: of OME, and of ImageJ (unit, yunit, zunit).
+for y, z in (("mm", "nm"), ("\u00b5m", "\u212b")):
+    ny, nz = {"mm": 1e-3, "nm": 1e3, "\u00b5m": 1, "\u212b": 1e4}[y], \
+        {"nm": 1e3, "\u212b": 1e4}[z]
+    tifffile.imwrite("u.ome.tif", h[0, :, 0], photometric="minisblack",
+                     metadata={"axes": "ZYX", "PhysicalSizeX": 0.5,
+                               "PhysicalSizeY": 0.5 * ny, "PhysicalSizeYUnit": y,
+                               "PhysicalSizeZ": 2 * nz, "PhysicalSizeZUnit": z})
+    oracle.expect("u.ome.tif", h[0, :, 0], oracle.image((0.5, 0.5, 2)), unit="um",
+                  name=f"OME in um, {y}, {z}")
+tifffile.imwrite("u.tif", h[0, :, 0], imagej=True, resolution=(2, 2),
+                 metadata={"axes": "ZYX", "spacing": 2000, "unit": "micron",
+                           "zunit": "nm"})
+oracle.expect("u.tif", h[0, :, 0], oracle.image((0.5, 0.5, 2)), unit="um",
+              name="ImageJ in um and nm")
+
 # Folders and patterns.
 os.mkdir("stack")
 a = oracle.sample("u2", (12, 8, 9))

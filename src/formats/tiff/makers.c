@@ -77,7 +77,8 @@ static void take_lsm(TIFF *tiff, tiff_shape *shape) {
     memcpy(shape->order, "XYZTC", sizeof shape->order);
     for (int i = 0; i < 3; i++)
         shape->spacing[i] = step[i] > 0 && step[i] < 1 ? step[i] * 1e6 : 0;
-    memcpy(shape->unit, "um", 3);
+    for (int i = 0; i < 3; i++)
+        memcpy(shape->units[i], "um", 3);
 }
 
 void snow_tiff_read_tags(const snow_tiff *file, const tiff_page *page,

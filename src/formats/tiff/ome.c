@@ -51,9 +51,9 @@ snow_status snow_tiff_keep(snow_context *context, tiff_ome *ome,
     return SNOW_STATUS_OK;
 }
 
-/* All in the unit of x; micrometres by default. */
+/* Micrometres by default. */
 static void take_spacing(const char **attributes, tiff_shape *out) {
-    char name[] = "PhysicalSizeX", unit_name[] = "PhysicalSizeXUnit", unit[16];
+    char name[] = "PhysicalSizeX", unit_name[] = "PhysicalSizeXUnit";
     for (int i = 0; i < 3; i++) {
         double length;
         name[12] = unit_name[12] = "XYZ"[i];
@@ -62,14 +62,9 @@ static void take_spacing(const char **attributes, tiff_shape *out) {
         if (!size || !snow_parse_double(size, &length) || !(length > 0) ||
             !isfinite(length))
             continue;
-        snow_tiff_take_unit(text ? text : "um", unit);
-        if (!*out->unit)
-            memcpy(out->unit, unit, sizeof unit);
-        const double own = snow_tiff_metres(unit);
-        const double first = snow_tiff_metres(out->unit);
-        if (own > 0 && first > 0 && strcmp(unit, out->unit) != 0)
-            length *= own / first;
         out->spacing[i] = length;
+        snprintf(out->units[i], sizeof out->units[i], "%.15s",
+                 text ? text : "um");
     }
 }
 

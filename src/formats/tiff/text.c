@@ -48,24 +48,6 @@ static double length_of(const char *value) {
                : 0;
 }
 
-void snow_tiff_take_unit(const char *text, char unit[16]) {
-    static const char *const micro[] = {"micron",     "microns",   "micrometer",
-                                        "micrometre", "\xc2\xb5m", "\xce\xbcm",
-                                        "\xb5m",      "\\u00B5m",  "\\u00b5m",
-                                        "&#181;m",    "um"};
-    *unit = 0;
-    text += strspn(text, " \t");
-    if (!strcmp(text, "pixel") || !strcmp(text, "pixels"))
-        return;
-    for (size_t i = 0; i < sizeof micro / sizeof *micro; i++)
-        if (!strcmp(text, micro[i]))
-            text = "um";
-    if (!strcmp(text, "\xc3\x85"))
-        text = "angstrom";
-    if (strlen(text) < 16)
-        memcpy(unit, text, strlen(text) + 1);
-}
-
 /* Values of a straight line (cf=0), as ij.measure.Calibration has them. */
 static void take_calibration(const char *text, tiff_shape *out) {
     char value[VALUE_BYTES];
@@ -99,21 +81,15 @@ static void read_imagej(const char *text, tiff_shape *out) {
     /* A stack that was reversed has a spacing below 0. */
     if (line_value(text, "spacing", value))
         out->spacing[2] = length_of(value + (*value == '-'));
-    if (line_value(text, "unit", value))
-        snow_tiff_take_unit(value, out->unit);
+    /* y and z have a unit only where it is not that of x. */
+    static const char *const units[] = {"unit", "yunit", "zunit"};
+    for (int i = 0; i < 3; i++) {
+        if (!line_value(text, units[i], value))
+            snprintf(value, sizeof value, "%s", out->units[0]);
+        if (strcmp(value, "pixel") != 0 && strcmp(value, "pixels") != 0)
+            snprintf(out->units[i], sizeof out->units[i], "%.15s", value);
+    }
     take_calibration(text, out);
-}
-
-double snow_tiff_metres(const char *unit) {
-    static const struct {
-        const char *name;
-        double metres;
-    } units[] = {{"m", 1},     {"cm", 1e-2},  {"mm", 1e-3},       {"um", 1e-6},
-                 {"nm", 1e-9}, {"pm", 1e-12}, {"angstrom", 1e-10}};
-    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-        if (!strcmp(unit, units[i].name))
-            return units[i].metres;
-    return 0;
 }
 
 void snow_tiff_read_text(const char *text, tiff_shape *out) {

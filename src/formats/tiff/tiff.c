@@ -8,6 +8,7 @@
 #include "formats/tiff/tiff.h"
 #include "formats/array.h"
 #include "formats/features.h"
+#include "volume/length_unit.h"
 #include "volume/mask.h"
 
 #include <math.h>
@@ -104,8 +105,8 @@ static void take_resolution(snow_tiff *file, tiff_plan *plan) {
         return;
     shape->spacing[0] = mm / (double)x;
     shape->spacing[1] = mm / (double)y;
-    if (plan->measured)
-        memcpy(shape->unit, "mm", 3);
+    for (int i = 0; i < 3 && plan->measured; i++)
+        memcpy(shape->units[i], "mm", 3);
 }
 
 /* Samples that are colours have known names. */
@@ -219,14 +220,19 @@ static snow_status plan_ome(tiff_set *set, tiff_plan *plan, tiff_reader **out) {
 static void take_matrix(snow_tiff *file, tiff_plan *plan,
                         snow_volume_info *info) {
     const tiff_shape *shape = &plan->shape;
+    const char *texts[3];
+    double factors[3];
     take_resolution(file, plan);
     for (int i = 0; i < 3; i++)
+        texts[i] =
+            shape->spacing[i] > 0 || *shape->units[i] ? shape->units[i] : NULL;
+    snow_length_join(file->context, texts, factors, info->unit);
+    for (int i = 0; i < 3; i++)
         if (shape->spacing[i] > 0 && isfinite(shape->spacing[i]))
-            info->matrix[i][i] = shape->spacing[i];
+            info->matrix[i][i] = factors[i] * shape->spacing[i];
         else if (i == 2)
             info->matrix[2][2] = info->matrix[0][0];
     snow_image_turn(info->matrix);
-    memcpy(info->unit, shape->unit, sizeof info->unit);
 }
 
 /* ImageJ calibrates samples of 8 and 16 bits; ranges are of stored values. */

@@ -23,9 +23,9 @@ typedef struct tiff_shape {
     int64_t channels, slices, frames;
     char order[6];     /* the order of C, Z and T, "XYCZT" */
     double spacing[3]; /* ImageJ stores x and y elsewhere */
-    char unit[16];
-    double scale[2]; /* ImageJ: value = [0] + [1] * stored */
-    bool bent;       /* ... or another function, which is not read */
+    char units[3][16]; /* of x, y, z, as the file has them */
+    double scale[2];   /* ImageJ: value = [0] + [1] * stored */
+    bool bent;         /* ... or another function, which is not read */
     char value_unit[32];
     double nodata; /* the value of missing voxels; NaN: none */
     snow_channel channel[SNOW_CHANNELS_MAX];
@@ -34,12 +34,6 @@ typedef struct tiff_shape {
 
 /* Reads the text of the ImageDescription, which may be NULL. */
 void snow_tiff_read_text(const char *text, tiff_shape *out);
-
-/* Unifies the many spellings of a micrometre; others stay as they are. */
-void snow_tiff_take_unit(const char *text, char unit[16]);
-
-/* Metres in a unit of length by such a name; 0 if unknown. */
-double snow_tiff_metres(const char *unit);
 
 /* Planes that OME-XML says to be consecutive pages of a file: a TiffData. */
 typedef struct tiff_run {
