@@ -141,16 +141,16 @@ static void copy_meaning(PyObject *like, snow_volume_info *info) {
 /* Over a C contiguous array (z, y, x) of the caller, whose own array has its
  * dimensions in an order. */
 static PyObject *volume_wrap(PyObject *module, PyObject *args) {
-    PyObject *type, *array, *matrix, *like;
+    PyObject *type, *array, *matrix, *like, *window = Py_None;
     double slope, intercept;
     int medical, alike = 1;
     const char *unit;
     snow_status status;
     (void)module;
     int order[3];
-    if (!PyArg_ParseTuple(args, "OO(iii)OddpsO|p", &type, &array, &order[0],
+    if (!PyArg_ParseTuple(args, "OO(iii)OddpsO|pO", &type, &array, &order[0],
                           &order[1], &order[2], &matrix, &slope, &intercept,
-                          &medical, &unit, &like, &alike))
+                          &medical, &unit, &like, &alike, &window))
         return NULL;
     volume_object *o = volume_begin(type, like);
     if (!o)
@@ -162,7 +162,9 @@ static PyObject *volume_wrap(PyObject *module, PyObject *args) {
         copy_meaning(like, &info);
     if (PyObject_GetBuffer(array, &o->buffer,
                            PyBUF_C_CONTIGUOUS | PyBUF_FORMAT) ||
-        !record_numbers("matrix", matrix, 16, false, info.matrix))
+        !record_numbers("matrix", matrix, 16, false, info.matrix) ||
+        (window != Py_None &&
+         !record_numbers("window", window, 2, false, info.window)))
         goto failed;
     info.type = type_of_buffer(&o->buffer);
     if (o->buffer.ndim != 3 || info.type == SNOW_TYPE_NONE) {

@@ -24,6 +24,13 @@ static bool range_is_given(const options *opts) {
            options_place_colors(opts);
 }
 
+/* Means have the unit of the values, so that the window of their file suits
+ * them; the description of the look says whether it has been taken. */
+static bool has_window(const options *opts, const snow_transfer *transfer) {
+    return strcmp(opts->mode, "mean") == 0 &&
+           strstr(snow_transfer_description(transfer), "the file's own window");
+}
+
 int paint_check(const options *opts, bool movie) {
     if (!movie || strcmp(opts->mode, "sum") != 0 || range_is_given(opts) ||
         keeps_values(opts->output))
@@ -51,7 +58,7 @@ int paint_copy(const options *opts, snow_context *context,
                const snow_transfer *transfer, bool movie,
                const snow_image *image, snow_image **out, paint_given *given) {
     double low, high;
-    if (range_is_given(opts) || movie)
+    if (range_is_given(opts) || movie || has_window(opts, transfer))
         snow_transfer_domain(transfer, &low, &high);
     else
         snow_image_value_range(image, &low, &high);

@@ -21,6 +21,7 @@ class Wrapped(NamedTuple):
     unit: str
     frozen: bool
     values: Optional[str]    #: the unit of data values, where it is known
+    window: Optional[tuple[float, float]]  #: that the image asks for
 
 
 #: What `wrap` takes beside the array.
@@ -62,6 +63,7 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
     """Any source as an array, and its place in the world."""
     import numpy
     values: Optional[str] = None
+    window = _window_of(source) if _is_nibabel(source) else None
     given_place = affine is not None
     if _is_nibabel(source):
         if affine is None and spacing is None:
@@ -122,7 +124,7 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
     return Wrapped(array, order, axes, [float(each) for each in placed.ravel()],
                    slope, _checks.number("intercept", intercept, "a finite number"),
                    bool(medical), _cut(_checks.text("unit", unit, UNIT) or ""),
-                   frozen, values)
+                   frozen, values, window)
 
 
 def _is_fortran(array: Any) -> bool:
@@ -183,6 +185,18 @@ def _affine_in_mm(image: Any) -> Any:
     matrix = numpy.diag([*image.header.get_zooms()[:3], 1.0]) \
         if image.affine is None else image.affine
     return numpy.diag([factor, factor, factor, 1]) @ matrix
+
+
+def _window_of(image: Any) -> Optional[tuple[float, float]]:
+    """cal_min and cal_max of NIfTI, as the library takes those of files."""
+    try:
+        head = image.header
+        low, high = float(head["cal_min"]), float(head["cal_max"])
+        labels = int(head["intent_code"]) == 1002
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError):
+        return None
+    return (low, high) if -math.inf < low < high < math.inf and not labels \
+        else None
 
 
 def _stored_values(data: Any) -> tuple[Any, float, float]:

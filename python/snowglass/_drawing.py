@@ -9,7 +9,7 @@ from typing import Any, Callable, Mapping, Optional, Sequence
 
 from . import _recipes, _snowglass
 from ._images import Image
-from ._looks import Look, is_ranged, look_of
+from ._looks import Look, is_ranged, look_of, shows_window
 from ._volumes import Volume
 
 Keys = Mapping[str, Any]
@@ -184,7 +184,8 @@ class Drawing:
         options["size"] = [_shrunk(side, shrink) for side in options["size"]]
         image = self.volume.render(self.transfer, quality=quality,
                                    progress=progress, **options)
-        image._ranged = is_ranged(self._look_of(recipe))
+        image._ranged = is_ranged(self._look_of(recipe)) or shows_window(
+            str(options.get("mode")), self.transfer)
         return image
 
     def thumbnail(self, recipe: Keys, preset: str, side: int,

@@ -143,6 +143,12 @@ def _plain(name: str) -> str:
     return name.lower().replace("-", "").replace("_", "")
 
 
+def shows_window(mode: str, transfer: Any) -> bool:
+    """Means have the unit of the values, so that the window of their file suits
+    them."""
+    return mode == "mean" and "the file's own window" in transfer.description
+
+
 def is_ranged(look: Any) -> bool:
     """Whether a look names the range that it is spread over."""
     return isinstance(look, Look) and look.range not in (None, "auto")

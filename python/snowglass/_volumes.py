@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Sequence, Un
 
 from . import _arrays, _channels, _checks, _movies, _overlays, _recipes, _snowglass
 from ._images import Image, Path
-from ._looks import Look, colors_are_open, is_ranged, look_of
+from ._looks import Look, colors_are_open, is_ranged, look_of, shows_window
 from ._progress import Progress, progress_of
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ class Volume(_snowglass.Volume):
         given = _arrays.wrap(source, **options)
         made = _snowglass.wrap(cls, given.array, given.order, given.matrix,
                                given.slope, given.intercept, given.medical,
-                               given.unit, None)
+                               given.unit, None, True, given.window)
         made._axes, made._order = given.axes, given.order
         made._values = given.values
         made._frozen = given.frozen
@@ -460,7 +460,7 @@ class Volume(_snowglass.Volume):
         image._annotations = annotations
         image._values = mode in ("mean", "sum")
         image._domain = None if mode == "over" else transfer.domain
-        image._ranged = is_ranged(look)
+        image._ranged = is_ranged(look) or shows_window(mode, transfer)
         image._background = (20 / 255,) * 3 if mode in ("over", "iso") \
             else (0.0,) * 3
 

@@ -185,7 +185,32 @@ static bool is_left(const snow_histogram *histogram) {
     return share_there(histogram) < 1 - LEFT_OUT;
 }
 
+/* Narrows the ends to a window; values beyond it count as those at its ends. */
+static snow_status narrow(const snow_histogram *histogram,
+                          const double window[2], double ends[2],
+                          uint64_t *counts, bool *narrowed) {
+    uint64_t above = 0, all, inside = 0;
+    const double low = fmax(ends[0], window[0]),
+                 high = fmin(ends[1], window[1]);
+    if (!(low < high) || (low == ends[0] && high == ends[1]))
+        return SNOW_STATUS_OK;
+    ends[0] = low;
+    ends[1] = high;
+    if (high < histogram->max)
+        SNOW_TRY(
+            snow_count_bins(histogram, high, histogram->max, 1, &above, &all));
+    SNOW_TRY(snow_count_bins(histogram, low, high, BINS, counts, &all));
+    for (int i = 0; i < BINS; i++)
+        inside += counts[i];
+    above = above < all - inside ? above : all - inside;
+    counts[BINS - 1] += above;
+    counts[0] += all - inside - above;
+    *narrowed = true;
+    return SNOW_STATUS_OK;
+}
+
 snow_status snow_histogram_split_at(const snow_histogram *histogram,
+                                    const double *window,
                                     snow_histogram_split *out) {
     *out =
         (snow_histogram_split){.constant = !(histogram->min < histogram->max)};
@@ -204,6 +229,8 @@ snow_status snow_histogram_split_at(const snow_histogram *histogram,
     }
     uint64_t counts[BINS], all;
     SNOW_TRY(snow_count_bins(histogram, ends[0], ends[1], BINS, counts, &all));
+    if (window)
+        SNOW_TRY(narrow(histogram, window, ends, counts, &out->narrowed));
     read_counts(counts, all, is_left(histogram) ? share_there(histogram) : 1,
                 histogram->scale, ends[0], ends[1], out);
     return SNOW_STATUS_OK;
@@ -406,7 +433,7 @@ static snow_status build_field(const snow_histogram *histogram,
     double top, start, threshold = p->threshold, object = p->object;
     SNOW_TRY(
         snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, &share, 1, &top));
-    top = fmax(top, p->top);
+    top = p->narrowed ? p->top : fmax(top, p->top);
     start = p->with_faint ? p->faint
                           : snow_between_on(histogram->scale, p->background,
                                             p->threshold, 0.6);
@@ -426,22 +453,41 @@ static snow_status build_field(const snow_histogram *histogram,
     return SNOW_STATUS_OK;
 }
 
+/* Where a file without modality has a window, as NIfTI's cal_min and cal_max,
+ * the look of its body is made of the values in it; that of a scan is made for
+ * slices, which are drawn over it. */
+static snow_status split_within_window(const snow_histogram *histogram,
+                                       const snow_look *look,
+                                       snow_transfer_builder *builder,
+                                       snow_histogram_split *out) {
+    double window[2];
+    bool is = false;
+    if (look->range == SNOW_RANGE_AUTO && !*histogram->volume->info.modality &&
+        !is_slice(histogram))
+        SNOW_TRY(
+            snow_window_of(histogram, builder, &window[0], &window[1], &is));
+    SNOW_TRY(snow_histogram_split_at(histogram, is ? window : NULL, out));
+    if (!out->narrowed)
+        builder->range_note[0] = 0; /* the window is wider than the values */
+    return SNOW_STATUS_OK;
+}
+
 snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
                                             const snow_look *look,
                                             snow_transfer_builder *builder) {
     snow_scale scale = histogram->scale;
     snow_histogram_split p;
-    SNOW_TRY(snow_histogram_split_at(histogram, &p));
+    SNOW_TRY(split_within_window(histogram, look, builder, &p));
     builder->reason = "from the histogram";
     builder->opacity_count = 0;
     if (p.constant) {
         build_constant(histogram, builder);
         return SNOW_STATUS_OK;
     }
-    bool slice = is_slice(histogram);
+    bool slice = is_slice(histogram), shown;
     int preset = -1;
     if (slice)
-        snow_window_of(histogram, builder, &p.low, &p.high);
+        SNOW_TRY(snow_window_of(histogram, builder, &p.low, &p.high, &shown));
     else if (look->range == SNOW_RANGE_AUTO && !p.fills_volume)
         SNOW_TRY(hounsfield_preset(histogram, &preset));
     if (preset >= 0)

@@ -28,16 +28,29 @@ void snow_full_range(const snow_histogram *histogram, double *low,
         *high = *low < 0 ? 0 : 1;
 }
 
-bool snow_window_of(const snow_histogram *histogram,
-                    snow_transfer_builder *builder, double *low, double *high) {
+/* A window of a file without modality (cal_min and cal_max of NIfTI) is that of
+ * a program rather than of a radiologist: it counts if it shows so many. */
+#define FEWEST 0.01
+
+snow_status snow_window_of(const snow_histogram *histogram,
+                           snow_transfer_builder *builder, double *low,
+                           double *high, bool *is) {
     const double *window = histogram->volume->info.window;
+    uint64_t inside = 1, all = 1;
+    *is = false;
     if (histogram->scale.log || !(window[0] < window[1]) ||
         !(window[0] < histogram->max && window[1] > histogram->min))
-        return false;
+        return SNOW_STATUS_OK;
+    if (!*histogram->volume->info.modality)
+        SNOW_TRY(
+            snow_count_bins(histogram, window[0], window[1], 1, &inside, &all));
+    if ((double)inside < FEWEST * (double)all)
+        return SNOW_STATUS_OK;
+    *is = true;
     *low = window[0];
     *high = window[1];
     strcpy(builder->range_note, "; the file's own window");
-    return true;
+    return SNOW_STATUS_OK;
 }
 
 /* So much is left out at an end where that halves the range or more. */
@@ -48,8 +61,9 @@ snow_status snow_robust_range(const snow_histogram *histogram, double *low,
     const double shares[2] = {FEW, 1 - FEW}, full[2] = {*low, *high};
     const double half = (full[1] - full[0]) / 2;
     double ends[2];
-    if (snow_window_of(histogram, builder, low, high) || histogram->scale.log ||
-        !histogram->finite)
+    bool is;
+    SNOW_TRY(snow_window_of(histogram, builder, low, high, &is));
+    if (is || histogram->scale.log || !histogram->finite)
         return SNOW_STATUS_OK;
     SNOW_TRY(
         snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, shares, 2, ends));
@@ -98,7 +112,7 @@ snow_status snow_transfer_builder_reserve(snow_context *context, size_t colors,
 snow_status snow_object_range(const snow_histogram *histogram, double *low,
                               double *high) {
     snow_histogram_split p;
-    SNOW_TRY(snow_histogram_split_at(histogram, &p));
+    SNOW_TRY(snow_histogram_split_at(histogram, NULL, &p));
     snow_full_range(histogram, low, high);
     if (!p.constant) {
         *low =

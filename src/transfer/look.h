@@ -112,10 +112,13 @@ typedef struct snow_histogram_split {
     bool with_faint;   /* there is such structure, and it is sparse */
     bool fills_volume; /* the object fills the volume: no split */
     double low, high;  /* robust ends */
+    bool narrowed;     /* by a window */
 } snow_histogram_split;
 
-/* Computes the split.  Errors: SNOW_STATUS_NO_MEMORY. */
+/* Computes the split, of the values in a window where that is not NULL.
+ * Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_histogram_split_at(const snow_histogram *histogram,
+                                    const double *window,
                                     snow_histogram_split *out);
 
 /* The automatic look, of which `look` says whether it may have any range.
@@ -178,10 +181,12 @@ int snow_look_slopes(const snow_look *look, const snow_volume_info *info);
 snow_status snow_object_range(const snow_histogram *histogram, double *low,
                               double *high);
 
-/* The window of the file; false if it has none, or none for these values.  Else
- * all values of low..high but a few far off.  Both leave a note. */
-bool snow_window_of(const snow_histogram *histogram,
-                    snow_transfer_builder *builder, double *low, double *high);
+/* The window of the file, unless it has none, or none for these values; *is:
+ * it has.  Else all values of low..high but a few far off.  Both leave a note.
+ * Errors: those of snow_count_bins. */
+snow_status snow_window_of(const snow_histogram *histogram,
+                           snow_transfer_builder *builder, double *low,
+                           double *high, bool *is);
 snow_status snow_robust_range(const snow_histogram *histogram, double *low,
                               double *high, snow_transfer_builder *builder);
 

@@ -350,7 +350,7 @@ static void cut_files_are_refused_at_every_length(void **state) {
     support_bad_bytes(*state, "a.nii", "", 0, "empty");
 }
 
-enum field { DIM, TYPE, BYTES, OFFSET, INTERCEPT };
+enum field { DIM, TYPE, OFFSET, INTERCEPT };
 
 static void headers_that_lie_are_refused(void **state) {
     static const struct {
@@ -367,7 +367,6 @@ static void headers_that_lie_are_refused(void **state) {
         {1, TYPE, 0, 2048, "complex"},
         {1, TYPE, 0, 0, "type 0 is unknown"},
         {1, TYPE, 0, 77, "type 77"},
-        {1, BYTES, 0, 4, "32 bits per voxel"},
         {1, INTERCEPT, 0, NAN, "intercept"},
         {1, DIM, 0, 8, "8 axes"},
         {1, DIM, 2, 0, "axis 2"},
@@ -391,8 +390,6 @@ static void headers_that_lie_are_refused(void **state) {
             put_dim(&f, cases[i].axis, (int64_t)value);
         else if (cases[i].field == TYPE)
             put_datatype(&f, (int)value, 0);
-        else if (cases[i].field == BYTES)
-            put_datatype(&f, 4, (size_t)value);
         else
             put_real(&f, cases[i].field == OFFSET ? 108 : 116, 184, value);
         refuse(*state, &f, cases[i].part);
@@ -409,6 +406,41 @@ static void headers_that_lie_are_refused(void **state) {
     f = make_file(1, false);
     memset(f.bytes + 344, 0, 4);
     refuse(*state, &f, "Analyze");
+}
+
+/* Their number repeats the type, which other readers take, too. */
+static void wrong_bits_leave_the_type(void **state) {
+    for (int version = 1; version <= 2; version++) {
+        file f = make_file(version, false);
+        put_datatype(&f, 4, 1);
+        snow_volume *volume = open_file(*state, &f);
+        expect_first(volume, 100);
+        snow_volume_close(volume);
+    }
+    support_files *files = *state;
+    assert_non_null(strstr(files->warnings, "claims 8 bits per voxel"));
+}
+
+static void cal_min_and_cal_max_are_the_window(void **state) {
+    static const struct {
+        double low, high;
+        int intent;
+        bool is;
+    } rows[] = {{3, 80, 0, true},    {0, 0, 0, false},
+                {5, 5, 0, false},    {80, 3, 0, false},
+                {NAN, 3, 0, false},  {-INFINITY, 3, 0, false},
+                {3, 80, 1002, false}};
+    for (size_t i = 0; i < 4 * COUNT(rows); i++) {
+        file f = make_file(1 + (int)i % 4 / 2, i % 2);
+        put_real(&f, 128, 200, rows[i / 4].low);
+        put_real(&f, 124, 192, rows[i / 4].high);
+        put_code(&f, 68, 504, rows[i / 4].intent);
+        snow_volume *volume = open_file(*state, &f);
+        const double *window = snow_volume_get_info(volume)->window;
+        assert_true(window[0] == (rows[i / 4].is ? 3 : 0));
+        assert_true(window[1] == (rows[i / 4].is ? 80 : 0));
+        snow_volume_close(volume);
+    }
 }
 
 static void gzip_is_verified_to_its_last_byte(void **state) {
@@ -621,6 +653,8 @@ int main(void) {
         SUPPORT_TEST(few_axes_and_extensions_are_read),
         SUPPORT_TEST(cut_files_are_refused_at_every_length),
         SUPPORT_TEST(headers_that_lie_are_refused),
+        SUPPORT_TEST(wrong_bits_leave_the_type),
+        SUPPORT_TEST(cal_min_and_cal_max_are_the_window),
         SUPPORT_TEST(gzip_is_verified_to_its_last_byte),
         SUPPORT_TEST(a_packed_size_that_lies_is_refused_early),
         SUPPORT_TEST(pairs_open_by_either_file),

@@ -103,6 +103,17 @@ class Lines(InFolder):
                      sg.Volume(load().slicer[:, :, 5:])):
             self.assertNotIn("input", each.render("ct-bone", size=40).recipe)
 
+    def test_an_image_of_nibabel_has_its_window(self):
+        import nibabel
+        slab = numpy.arange(2000, dtype=numpy.int16).reshape(40, 50, 1)
+        image = nibabel.Nifti1Image(slab, numpy.eye(4))
+        image.header["cal_min"], image.header["cal_max"] = 100, 1500
+        nibabel.save(image, "window.nii")
+        for source in (image, nibabel.load("window.nii"), "window.nii"):
+            self.assertIn("100..1500", sg.Volume(source).look())
+        image.header["intent_code"] = 1002
+        self.assertNotIn("100..1500", sg.Volume(image).look())
+
     def statements(self, text):
         import ast
         lines = text.split("\n")

@@ -672,6 +672,44 @@ static void a_projection_survives_a_hot_voxel(void **state) {
     assert_true(looks_say(transfer, "the file's own window"));
 }
 
+/* One of a file without modality (NIfTI) counts if 1 % of the voxels lie in it;
+ * the look of a body is made of those, unless a range or preset is given. */
+static void a_window_of_a_program_bounds_the_look(void **state) {
+    static uint16_t voxels[8000];
+    static const struct {
+        double window[2];
+        const char *modality;
+        snow_range range;
+        bool taken;
+    } rows[] = {{{0, 1000}, "", SNOW_RANGE_AUTO, true},
+                {{0, 1000}, "MR", SNOW_RANGE_AUTO, false},
+                {{0, 1000}, "", SNOW_RANGE_FULL, false},
+                {{600, 800}, "", SNOW_RANGE_AUTO, false}, /* 79 voxels */
+                {{0, 9000}, "", SNOW_RANGE_AUTO, false}}; /* all of them */
+    looks_fixture *f = *state;
+    for (int i = 0; i < 8000; i++)
+        voxels[i] = (uint16_t)(i < 6000   ? i % 100
+                               : i < 6079 ? 700
+                                          : 900 + (i * 7 % 1600));
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        snow_volume_info info = {.type = SNOW_TYPE_UINT16};
+        double low, high;
+        memcpy(info.window, rows[n].window, sizeof info.window);
+        strcpy(info.modality, rows[n].modality);
+        snow_transfer *transfer = look_at_patient(
+            f, voxels, info, (snow_look){.range = rows[n].range});
+        snow_transfer_domain(transfer, &low, &high);
+        assert_true((high <= 1000) == rows[n].taken);
+        assert_true(looks_say(transfer, "the file's own window") ==
+                    rows[n].taken);
+        transfer = look_at_patient(
+            f, voxels, info,
+            (snow_look){.preset = "linear", .range = SNOW_RANGE_ROBUST});
+        assert_true(looks_say(transfer, "the file's own window") ==
+                    (rows[n].window[0] == 0));
+    }
+}
+
 /* Colours of one's own lie where they are, whatever the range and the scale. */
 static void a_list_of_colours_is_a_map(void **state) {
     static const float values[] = {1, 10, 100, 1000};
@@ -743,6 +781,7 @@ int main(void) {
         LOOKS_TEST(ct_in_hounsfield_units_has_a_look_of_ct),
         LOOKS_TEST(what_is_known_of_an_automatic_look_makes_it_again),
         LOOKS_TEST(a_projection_survives_a_hot_voxel),
+        LOOKS_TEST(a_window_of_a_program_bounds_the_look),
         LOOKS_TEST(one_heap_of_values_is_a_solid_block),
         LOOKS_TEST(a_list_of_colours_is_a_map),
         cmocka_unit_test(what_is_no_list_of_colours_is_refused),

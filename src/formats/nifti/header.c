@@ -129,7 +129,8 @@ size_t nifti_header_size(const unsigned char *bytes, size_t size) {
     const bool magic1 =
         size >= NIFTI1_BYTES && (memcmp(bytes + 344, "n+1", 4) == 0 ||
                                  memcmp(bytes + 344, "ni1", 4) == 0);
-    /* The size of version 2 is no mistake of a program: one of both is wrong. */
+    /* The size of version 2 is no mistake of a program: one of both is wrong.
+     */
     if (magic1 && !has_size(bytes, NIFTI2_BYTES, &big) &&
         (has_size(bytes, NIFTI1_BYTES, &big) || order_of_dim(bytes, &big)))
         return NIFTI1_BYTES;
@@ -139,21 +140,24 @@ size_t nifti_header_size(const unsigned char *bytes, size_t size) {
 #define INTENT_LABEL 1002
 #define INTENT_DISPLACEMENT 1006
 #define INTENT_VECTOR 1007
+#define INTENT_RGB 2003
+#define INTENT_RGBA 2004
 
 /* The offsets and widths of a version's fields. */
 typedef struct nifti_layout {
     size_t float_bytes, dim_bytes, code_bytes;
     size_t datatype, bitpix, dim, pixdim, slope, intercept, units, units_bytes;
-    size_t intent, descrip, qform_code, sform_code, quatern, qoffset, srow;
+    size_t cal_max, cal_min, intent, descrip, qform_code, sform_code, quatern,
+        qoffset, srow;
 } nifti_layout;
 
 /* In the order of the members above, from the comments of nifti1.h and
  * nifti2.h; version 2 widens most fields and moves all. */
 static const nifti_layout layouts[] = {
-    {4, 2, 2, 70, 72, 40, 76, 112, 116, 123, 1, 68, 148, 252, 254, 256, 268,
-     280},
-    {8, 8, 4, 12, 14, 16, 104, 176, 184, 500, 4, 504, 240, 344, 348, 352, 376,
-     400},
+    {4, 2,   2,   70, 72,  40,  76,  112, 116, 123,
+     1, 124, 128, 68, 148, 252, 254, 256, 268, 280},
+    {8, 8,   4,   12,  14,  16,  104, 176, 184, 500,
+     4, 192, 200, 504, 240, 344, 348, 352, 376, 400},
 };
 
 static void read_floats(const unsigned char *at, size_t count,
@@ -178,11 +182,21 @@ static void read_fields(const unsigned char *bytes, nifti_header *header) {
     const int64_t intent = int_at(bytes + l->intent, l->code_bytes, big);
     header->labels = intent == INTENT_LABEL;
     header->vectors = intent == INTENT_DISPLACEMENT || intent == INTENT_VECTOR;
+    header->colors = intent == INTENT_RGB || intent == INTENT_RGBA;
+    /* FSL keeps components where time is. */
+    if ((header->vectors || header->colors) && header->dim[0] == 4 &&
+        header->dim[4] == (intent == INTENT_RGBA ? 4 : 3)) {
+        header->dim[0] = 5;
+        header->dim[5] = header->dim[4];
+        header->dim[4] = 1;
+    }
     header->no_patient = !memcmp(bytes + l->descrip, NIFTI_NO_PATIENT,
                                  sizeof NIFTI_NO_PATIENT - 1);
     read_floats(bytes + l->pixdim, 8, l, big, header->pixdim);
     read_floats(bytes + l->slope, 1, l, big, &header->slope);
     read_floats(bytes + l->intercept, 1, l, big, &header->intercept);
+    read_floats(bytes + l->cal_max, 1, l, big, &header->cal_max);
+    read_floats(bytes + l->cal_min, 1, l, big, &header->cal_min);
     read_floats(bytes + l->quatern, 3, l, big, header->quatern);
     read_floats(bytes + l->qoffset, 3, l, big, header->qoffset);
     read_floats(bytes + l->srow, 12, l, big, header->srow[0]);
@@ -235,8 +249,8 @@ static snow_status check_dims(snow_context *context, nifti_header *header) {
     return SNOW_STATUS_OK;
 }
 
-/* bitpix repeats the type; some programs leave 0 there.  Another number
- * contradicts the type, and either could be wrong. */
+/* bitpix repeats the type, which counts, as in nibabel and ITK; some programs
+ * leave 0 or the bits of another type there. */
 static snow_status check_type(snow_context *context,
                               const nifti_header *header) {
     snow_type type = nifti_type(header->datatype);
@@ -254,10 +268,10 @@ static snow_status check_type(snow_context *context,
     const int bits =
         8 * nifti_samples(header->datatype) * (int)snow_type_size(type);
     if (header->bitpix && header->bitpix != bits)
-        return snow_fail(
-            context, SNOW_STATUS_BAD_INPUT,
-            "has %d bits per voxel but type %s; write the file again",
-            header->bitpix, snow_type_name(type));
+        snow_notify(context,
+                    "claims %d bits per voxel (bitpix) but type %s (datatype); "
+                    "the type is taken",
+                    header->bitpix, snow_type_name(type));
     return SNOW_STATUS_OK;
 }
 
@@ -284,6 +298,10 @@ snow_status nifti_header_parse(snow_context *context,
             context, SNOW_STATUS_BAD_INPUT,
             "%zu byte%s too few for a NIfTI header; get the file again", size,
             size == 1 ? " is" : "s are");
+    if (size >= 2 && bytes[0] == 0x1f && bytes[1] == 0x8b)
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "is compressed with gzip twice; decompress it once, "
+                         "for example with gunzip");
     if (!whole)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "the first %zu bytes are not a NIfTI header; check "

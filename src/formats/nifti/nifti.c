@@ -12,6 +12,7 @@
 #include "formats/write.h"
 #include "io/folder.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -34,6 +35,11 @@ static void describe_volume(const nifti_header *header, snow_context *context,
     info->whole = header->labels;
     nifti_geometry(context, header, options, info);
     sizes[0] = nifti_samples(header->datatype);
+    if (isfinite(header->cal_min) && isfinite(header->cal_max) &&
+        header->cal_max > header->cal_min && !header->labels &&
+        !header->vectors && !header->colors && sizes[0] == 1)
+        memcpy(info->window, (double[2]){header->cal_min, header->cal_max},
+               sizeof info->window);
     memcpy(sizes + 1, header->dim + 1, 4 * sizeof *sizes);
     /* Numbers that any header of 348 bytes can claim. */
     uint64_t last = (uint64_t)header->dim[5];
@@ -53,7 +59,7 @@ static snow_status pick(const nifti_header *header, snow_context *context,
     const bool colors = sizes[0] > 1;
     if (!header->vectors || colors)
         snow_channels_begin(info, colors ? sizes[0] : sizes[5], false);
-    if (colors)
+    if (colors || (header->colors && (sizes[5] == 3 || sizes[5] == 4)))
         snow_channels_are_colors(info);
     if (colors && sizes[5] > 1)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,

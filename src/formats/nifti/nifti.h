@@ -25,10 +25,12 @@ typedef struct nifti_header {
     int64_t dim[8];
     int datatype, bitpix;
     bool labels, vectors; /* intent_code says that values are */
+    bool colors;          /* of single channels: red, green, blue */
     double pixdim[8];     /* [0] is qfac, the sign of the third axis */
     uint64_t vox_offset;
     double slope, intercept;
-    int units; /* xyzt_units */
+    double cal_min, cal_max; /* data values; equal: none */
+    int units;               /* xyzt_units */
     int qform_code, sform_code;
     bool no_patient;   /* its description begins with the text above */
     double quatern[3]; /* b, c, d */

@@ -1,0 +1,78 @@
+"""NIfTI as nibabel writes and reads it: types, scales, matrices, windows."""
+import gzip
+import itertools
+import struct
+
+import oracle
+from oracle import np
+
+nibabel, = oracle.need("nibabel")
+
+
+def theirs(path, **options):
+    """The volume is what nibabel reads: stored values and matrix in mm."""
+    image = nibabel.load(path)
+    voxels = np.asarray(image.dataobj.get_unscaled())
+    steps = voxels.reshape(*voxels.shape[:3], -1)
+    slope, intercept = image.dataobj.slope, image.dataobj.inter
+    factor = {"meter": 1000, "micron": 1e-3}.get(
+        image.header.get_xyzt_units()[0], 1)
+    matrix = np.diag([factor, factor, factor, 1]) @ image.affine
+    for time in range(steps.shape[3]):
+        stored = steps[..., time].T
+        values = stored if (slope, intercept) == (1, 0) else \
+            stored * float(slope) + float(intercept)
+        oracle.expect(path, values, matrix, ["--time", time],
+                      dtype=stored.dtype.newbyteorder("="), **options)
+
+
+kinds = {1: nibabel.Nifti1Image, 2: nibabel.Nifti2Image}
+turn = np.linalg.qr(np.random.default_rng(4).standard_normal((3, 3)))[0]
+turn[:, 0] *= np.linalg.det(turn) # qform turns, but does not mirror
+for n, (version, order, (unit, form)) in enumerate(itertools.product(
+        kinds, "<>", (("mm", "s"), ("meter", "q"), ("micron", "q")))):
+    kind = ("i1", "u1", "i2", "u2", "i4", "f4", "f8")[n % 7]
+    shape = (5, 6, 7) if n % 3 else (5, 6, 7, 3)
+    voxels = oracle.sample(kind, shape).astype(order + kind)
+    header = kinds[version].header_class(endianness=order)
+    header.set_data_dtype(voxels.dtype)
+    header.set_xyzt_units(unit, "sec")
+    matrix = oracle.affine((1, 2, 3), (-4, 5, 6), turn)
+    image = kinds[version](voxels, matrix, header)
+    image.set_sform(matrix, 1 if form == "s" else 0)
+    image.set_qform(matrix, 1 if form == "q" else 0)
+    if kind[0] != "f":
+        image.header.set_slope_inter(0.5 * n + 1, -n)
+    image.header["cal_min"], image.header["cal_max"] = -3, 40 + n
+    nibabel.save(image, path := f"{n}.nii.gz" if n % 2 else f"{n}.nii")
+    theirs(path)
+    oracle.tells(path, window=[-3, 40 + n])
+
+# --- headers that other programs leave ----------------------------------------
+
+nibabel.save(nibabel.Nifti1Image(oracle.sample("i2", (5, 6, 7)),
+                                 np.diag([1, 2, 3, 1])), "plain.nii")
+for name, at, content, said in (
+        ("bits", 72, struct.pack("<h", 8), "claims 8 bits per voxel"),
+        ("nobits", 72, bytes(2), None),
+        ("axes", 40, struct.pack("<8h", 5, 5, 6, 7, 1, 1, 9, 9), None),
+        ("noslope", 112, struct.pack("<ff", float("nan"), 7), None)):
+    oracle.put(f"{name}.nii", oracle.got("plain.nii"))
+    theirs(oracle.patch(f"{name}.nii", at, content))
+    oracle.says(name, f"{name}.nii", said)
+# Vectors and colours of FSL lie where time is, others behind it.
+parts = oracle.sample("f4", (5, 6, 7, 3))
+for intent, key, options in ((2003, "channel", 1), (1007, "component", 2)):
+    for shape in ((5, 6, 7, 3), (5, 6, 7, 1, 3)):
+        image = nibabel.Nifti1Image(parts.reshape(shape), np.diag([1, 2, 3, 1]))
+        image.header["intent_code"] = intent
+        nibabel.save(image, "parts.nii")
+        oracle.expect("parts.nii", parts[..., options].T, np.diag([1, 2, 3, 1]),
+                      [f"--{key}", options], name=f"intent {intent} {shape}")
+once = gzip.compress(oracle.got("plain.nii"))
+halves = [gzip.compress(half) for half in (oracle.got("plain.nii")[:200],
+                                           oracle.got("plain.nii")[200:])]
+theirs(oracle.put("members.nii.gz", b"".join(halves)))
+oracle.refuse(oracle.put("twice.nii.gz", gzip.compress(once)),
+              "is compressed with gzip twice")
+oracle.finish()
