@@ -388,6 +388,26 @@ oracle.expect("dose.dcm", long * 0.25, grid((0.5, 0.75, 2), (1, 2, 3)),
               dtype="u4", name="a dose")
 oracle.says("a dose", "dose.dcm", None)
 
+# What older programs leave: bytes behind the pixels, 0 frames; tables and maps.
+table = holds(LUTDescriptor=[2, 0, 16], ModalityLUTType="US",
+              LUTData=np.array([0, 9], "u2").tobytes())
+table["LUTData"].VR, table["LUTDescriptor"].VR = "OW", "US"
+real = holds(RealWorldValueSlope=0.5, RealWorldValueIntercept=0.0)
+for name, said, tags in (
+        ("more bytes", None, {}), ("0 frames", "claims 0 frames", {"NumberOfFrames": 0}),
+        ("a table", "is not applied", {"ModalityLUTSequence": [table]}),
+        ("a map", "is not applied", {"RealWorldValueMappingSequence": [real]}),
+        ("a map beside a rescale", None,
+         {"RealWorldValueMappingSequence": [real], "RescaleSlope": 1,
+          "RescaleIntercept": 8})):
+    data = image(unsigned[0], rising[0], **tags)
+    if name == "more bytes":
+        data.PixelData += bytes(34)
+    write("old.dcm", data)
+    oracle.expect("old.dcm", unsigned[:1] + 1.0 * tags.get("RescaleIntercept", 0),
+                  grid((0.5, 0.75, 9), rising[0]), dtype="u2", name=name)
+    oracle.says(name, "old.dcm", said)
+
 # What GDCM packs, each way that has a code for the type.
 gdcmconv = shutil.which("gdcmconv")
 for kind in ("u1", "u2", "i2") if gdcmconv else ():

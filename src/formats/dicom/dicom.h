@@ -74,6 +74,7 @@ typedef struct dicom_image {
     int tiles; /* a side of a mosaic; 0: none; below 0: they are not known */
     bool has_normal, apart_guessed; /* of a mosaic's slices, as are these */
     double normal[3], apart;        /* mm; 0: not given */
+    bool no_frames;                 /* it says, which is taken for 1 */
     size_t first;                   /* its frame in the order of reading */
     uint64_t sum;                   /* of its pixels; 0: not computed */
 } dicom_image;
@@ -98,6 +99,7 @@ typedef struct dicom_frame {
     bool measured;   /* they are given */
     bool guessed;  /* depth is needed to place frames but missing; 1 is used */
     bool unscaled; /* a slope of 0 was ignored */
+    bool unmapped; /* a table or map of values was */
     bool lost;     /* its pixels are cut; they count as NaN */
     double depth;  /* given mm from slice to slice, signed; 0: none */
     double thickness;

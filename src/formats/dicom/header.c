@@ -231,7 +231,10 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
                          "has no integer pixels, the only supported kind; it "
                          "is truncated, or a map of floats");
     double frames = number(reader, 0x00280008, TEXT, 1);
-    image.frames = frames >= 1 && frames < 1e9 ? (int64_t)frames : 0;
+    image.no_frames = frames == 0;
+    image.frames = image.no_frames               ? 1
+                   : frames >= 1 && frames < 1e9 ? (int64_t)frames
+                                                 : 0;
     image.samples = (int)number(reader, 0x00280002, SHORTS, 1);
     image.allocated = (int)number(reader, 0x00280100, SHORTS, 16);
     image.stored = (int)number(reader, 0x00280101, SHORTS, image.allocated);
@@ -382,6 +385,21 @@ static void read_pixel(dicom_reader *reader, dicom_frame *frame) {
     }
 }
 
+/* Whether values have another meaning than the stored ones, by a table or by a
+ * map to real world values. */
+static bool has_map(dicom_reader *reader, int64_t frame) {
+    static const number_field slope_of = {0x00409096, 0x00409225, DOUBLES, 0,
+                                          TEXT};
+    static const number_field intercept_of = {0x00409096, 0x00409224, DOUBLES,
+                                              0, TEXT};
+    double slope = 1, intercept = 0;
+    numbers(reader, &slope_of, frame, &slope, 1);
+    numbers(reader, &intercept_of, frame, &intercept, 1);
+    return slope != 1 || intercept != 0 ||
+           snow_dicom_locate(reader,
+                             (dicom_place){frame, 0x00283000, 0x00283006});
+}
+
 /* Without a rescale, MONOCHROME1 means that high stored values are dark: the
  * range of the stored bits is inverted. */
 static void read_scale(dicom_reader *reader, const dicom_image *image,
@@ -393,6 +411,8 @@ static void read_scale(dicom_reader *reader, const dicom_image *image,
         slope = 1;
         frame->unscaled = true;
     }
+    frame->unmapped =
+        slope == 1 && intercept == 0 && has_map(reader, frame->number);
     if (!strcmp(image->photometric, "MONOCHROME1") && slope == 1 &&
         intercept == 0) {
         intercept = image->is_signed ? -1 : ldexp(1, image->stored) - 1;

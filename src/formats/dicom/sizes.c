@@ -35,15 +35,17 @@ static bool can_hold(const dicom_reader *reader, const dicom_image *image) {
            bytes <= most + ((uint64_t)1 << 31);
 }
 
-/* Returns whether plain pixels have at least a row more than the header says: a
- * few bytes may fill them up. */
+/* Returns whether plain pixels have whole rows more than the header says, which
+ * is wrong then.  Other bytes fill them up, as older programs do (PS3.5,
+ * 8.1.1). */
 static bool has_more(const dicom_reader *reader, const dicom_image *image) {
     const uint64_t row = (uint64_t)image->columns * (uint64_t)image->samples *
                          (uint64_t)image->allocated / 8;
     uint64_t bytes = 0;
     return !reader->packed && !strstr(image->photometric, "_42") &&
            count_bytes(image, &bytes) &&
-           reader->pixel_bytes > bytes + (row > 1 ? row - 1 : 1);
+           reader->pixel_bytes > bytes + (row > 1 ? row - 1 : 1) &&
+           (row <= 2 || (reader->pixel_bytes - bytes) % row <= 1);
 }
 
 /* Elements that lay out the pixels must not contradict one another. */

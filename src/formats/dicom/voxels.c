@@ -392,9 +392,19 @@ static bool are_only_numbered(const dicom_stack *stack) {
 static void warn_about_volume(snow_context *context, const dicom_stack *stack,
                               bool spacing_given) {
     const dicom_frame *first = stack->frames;
-    bool unscaled = false;
-    for (size_t i = 0; i < stack->places * stack->times; i++)
+    bool unscaled = false, unmapped = false, no_frames = false;
+    for (size_t i = 0; i < stack->places * stack->times; i++) {
         unscaled |= first[i].unscaled;
+        unmapped |= first[i].unmapped;
+        no_frames |= first[i].image->no_frames;
+    }
+    if (no_frames)
+        snow_notify(context, "claims 0 frames (NumberOfFrames); 1 is taken");
+    if (unmapped)
+        snow_notify(context,
+                    "its table or map of values (ModalityLUTSequence, "
+                    "RealWorldValueMappingSequence) is not applied; the values "
+                    "are as stored");
     if (!first->measured && !spacing_given)
         snow_notify(context, "the size of a pixel is missing or invalid; 1 mm "
                              "is used, --spacing sets another");
