@@ -8,45 +8,41 @@
 
 #include <string.h>
 
-/* The sum of the bytes from the pixels to the end of the file; of a deflated
- * file, of all. */
-static void sum_pixels(const dicom_reader *reader, snow_seekable *store,
-                       dicom_image *image) {
+/* Adds the bytes from the pixels to the end of the file, of a deflated file
+ * all: more than the pixels do not differ in a copy. */
+static uint64_t sum_of(const dicom_reader *reader, snow_seekable *store) {
     uint64_t at = reader->inner_store ? 0 : reader->pixels_at;
     uint64_t end = snow_seekable_size(store), sum = 0xcbf29ce484222325u;
     unsigned char bytes[4096];
-    if (!reader->packed && !reader->inner_store && !reader->cut)
+    if (!reader->packed && !reader->inner_store)
         end = at + reader->pixel_bytes;
-    while (at < end) {
+    for (size_t size = 1; at < end && size; at += size) {
         const uint64_t left = end - at;
-        const size_t size = snow_seekable_read(
-            store, at, bytes, left < sizeof bytes ? left : sizeof bytes);
+        size = snow_seekable_read(store, at, bytes,
+                                  left < sizeof bytes ? left : sizeof bytes);
         for (size_t i = 0; i < size; i++)
             sum = (sum ^ bytes[i]) * 0x100000001b3u;
-        at += size;
-        if (!size)
-            break; /* the file cannot be read, which shows later */
     }
-    image->sum = sum ? sum : 1;
+    return sum ? sum : 1;
 }
 
-/* The same of an image that was read before. */
-static snow_status sum_known(const dicom_input *given, dicom_image *image) {
+/* Reads an image's file once more, `given` if it has no path. */
+static snow_status sum_pixels(snow_context *context, snow_seekable *given,
+                              dicom_image *image) {
     snow_source *source = NULL;
-    snow_seekable *store = given->store;
+    snow_seekable *store = image->path ? NULL : given;
     dicom_reader reader;
     snow_status status = SNOW_STATUS_OK;
     if (image->sum)
         return SNOW_STATUS_OK;
     if (image->path) {
-        store = NULL;
-        SNOW_TRY(snow_source_open(given->context, image->path, &source));
+        SNOW_TRY(snow_source_open(context, image->path, &source));
         status = snow_seekable_open(source, &store);
     }
     if (status == SNOW_STATUS_OK)
-        status = snow_dicom_open(given->context, store, NULL, &reader);
+        status = snow_dicom_open(context, store, NULL, &reader);
     if (status == SNOW_STATUS_OK) {
-        sum_pixels(&reader, store, image);
+        image->sum = sum_of(&reader, store);
         snow_dicom_close(&reader);
     }
     if (source) {
@@ -68,18 +64,16 @@ static bool are_alike(const dicom_frame *a, const dicom_frame *b) {
     return alike;
 }
 
-snow_status snow_dicom_is_copy(const dicom_input *given, dicom_reader *reader,
-                               snow_seekable *store, dicom_image *image,
-                               const dicom_frame *known, dicom_image *other,
-                               bool *same) {
+snow_status snow_dicom_is_copy(dicom_reader *reader, snow_seekable *given,
+                               dicom_image *image, dicom_image *other,
+                               const dicom_frame *known, bool *same) {
     dicom_frame frame;
     snow_dicom_read_frame(reader, image, 0, &frame);
     *same = are_alike(&frame, known);
     if (!*same || reader->cut || known->lost)
         return SNOW_STATUS_OK;
-    if (!image->sum)
-        sum_pixels(reader, store, image);
-    SNOW_TRY(sum_known(given, other));
+    SNOW_TRY(sum_pixels(reader->context, given, image));
+    SNOW_TRY(sum_pixels(reader->context, given, other));
     *same = image->sum == other->sum;
     return SNOW_STATUS_OK;
 }

@@ -72,11 +72,11 @@ typedef struct dicom_image {
     bool pads;              /* stored values within padding are not data */
     double padding[2];
     int tiles; /* a side of a mosaic; 0: none; below 0: they are not known */
-    bool has_normal, apart_guessed; /* of a mosaic's slices, as are these */
-    double normal[3], apart;        /* mm; 0: not given */
-    bool no_frames;                 /* it says, which is taken for 1 */
-    size_t first;                   /* its frame in the order of reading */
-    uint64_t sum;                   /* of its pixels; 0: not computed */
+    bool has_normal;         /* of the slices of a mosaic, as are these */
+    double normal[3], apart; /* mm; 0: not given */
+    bool no_frames;          /* it says, which is taken for 1 */
+    size_t first;            /* its frame in the order of reading */
+    uint64_t sum;            /* of its pixels; 0: not computed */
 } dicom_image;
 
 /* The pixels of a slice: of a mosaic those of a tile. */
@@ -469,13 +469,11 @@ snow_status snow_dicom_read_stack(const dicom_input *input,
 
 /* --- copies.c ------------------------------------------------------------- */
 
-/* Whether the image of an open reader is the same as another with its SOP
- * instance UID, whose first frame is known.  Errors: those of reading the
- * other's file again. */
-snow_status snow_dicom_is_copy(const dicom_input *given, dicom_reader *reader,
-                               snow_seekable *store, dicom_image *image,
-                               const dicom_frame *known, dicom_image *other,
-                               bool *same);
+/* Whether the image of an open reader is that of another with its SOP instance
+ * UID, whose first frame is known; `given`: the store of one without a path. */
+snow_status snow_dicom_is_copy(dicom_reader *reader, snow_seekable *given,
+                               dicom_image *image, dicom_image *other,
+                               const dicom_frame *known, bool *same);
 
 /* --- segments.c ----------------------------------------------------------- */
 

@@ -79,9 +79,7 @@ static void free_collection(collection *c) {
 
 /* Whether a file before has the same image; UIDs are not always unique. */
 static snow_status find_copy(collection *c, dicom_reader *reader,
-                             snow_seekable *store, dicom_image *image,
-                             bool *found) {
-    const dicom_input given = {c->context, c->store};
+                             dicom_image *image, bool *found) {
     bool twin = false;
     *found = false;
     for (size_t i = 0; i < c->image_count && *image->instance && !*found; i++) {
@@ -89,8 +87,8 @@ static snow_status find_copy(collection *c, dicom_reader *reader,
         if (strcmp(other->instance, image->instance) != 0)
             continue;
         twin = true;
-        SNOW_TRY(snow_dicom_is_copy(&given, reader, store, image,
-                                    &c->frames[other->first], other, found));
+        SNOW_TRY(snow_dicom_is_copy(reader, c->store, image, other,
+                                    &c->frames[other->first], found));
     }
     c->copies += *found;
     c->twins += twin && !*found;
@@ -98,8 +96,7 @@ static snow_status find_copy(collection *c, dicom_reader *reader,
 }
 
 /* If `series` is given, images of others are left out. */
-static snow_status add_image(collection *c, dicom_reader *reader,
-                             snow_seekable *store, char *path,
+static snow_status add_image(collection *c, dicom_reader *reader, char *path,
                              const char *series) {
     bool copy;
     dicom_image image;
@@ -108,7 +105,8 @@ static snow_status add_image(collection *c, dicom_reader *reader,
     SNOW_TRY(snow_dicom_read_image(c->context, reader, &image));
     if (!image.rows || (series && strcmp(image.series, series) != 0))
         return SNOW_STATUS_OK;
-    SNOW_TRY(find_copy(c, reader, store, &image, &copy));
+    image.path = path;
+    SNOW_TRY(find_copy(c, reader, &image, &copy));
     if (copy)
         return SNOW_STATUS_OK;
     SNOW_TRY(SNOW_RESERVE(c->context, c->images, c->image_count,
@@ -117,7 +115,6 @@ static snow_status add_image(collection *c, dicom_reader *reader,
     if (!kept)
         return SNOW_STATUS_NO_MEMORY;
     *kept = image;
-    kept->path = path;
     c->images[c->image_count++] = kept;
     bool lost = reader->cut;
     size_t first = kept->first = c->frame_count;
@@ -137,7 +134,7 @@ static snow_status add_store(collection *c, snow_seekable *store, char *path,
                              const char *series) {
     dicom_reader reader;
     SNOW_TRY(snow_dicom_open(c->context, store, NULL, &reader));
-    snow_status status = add_image(c, &reader, store, path, series);
+    snow_status status = add_image(c, &reader, path, series);
     snow_dicom_close(&reader);
     return status;
 }

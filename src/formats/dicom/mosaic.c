@@ -26,8 +26,6 @@
 #define CSA_TAG 84
 #define CSA_ITEM 16
 
-/* --- the CSA header ------------------------------------------------------- */
-
 typedef struct csa {
     unsigned char *bytes; /* of the context; NULL: none */
     size_t size;
@@ -94,60 +92,48 @@ static const dicom_element *private_element(dicom_reader *reader,
     return NULL;
 }
 
-static snow_status read_csa(dicom_reader *reader, csa *out) {
+/* Takes what the CSA header says of the slices. */
+static snow_status read_csa(dicom_reader *reader, double *number,
+                            dicom_image *image) {
     const dicom_element *element =
         private_element(reader, 0x0029, "SIEMENS CSA HEADER", 0x10);
-    *out = (csa){NULL, 0};
     if (!element || !element->length || element->length > MOST_CSA)
         return SNOW_STATUS_OK;
-    out->bytes = snow_allocate(reader->context, element->length);
-    if (!out->bytes)
+    csa h = {snow_allocate(reader->context, element->length), 0};
+    if (!h.bytes)
         return SNOW_STATUS_NO_MEMORY;
-    out->size = snow_dicom_bytes(reader, element, out->bytes, element->length);
+    h.size = snow_dicom_bytes(reader, element, h.bytes, element->length);
+    if (!(*number > 0))
+        csa_numbers(&h, "NumberOfImagesInMosaic", number, 1);
+    image->has_normal =
+        csa_numbers(&h, "SliceNormalVector", image->normal, 3) == 3;
+    csa_numbers(&h, "SpacingBetweenSlices", &image->apart, 1);
+    snow_release(reader->context, h.bytes);
     return SNOW_STATUS_OK;
 }
 
 /* --- the image ------------------------------------------------------------ */
 
-/* What the CSA header says of the slices. */
-static void take_csa(const csa *h, double *number, dicom_image *image) {
-    static const char *const distances[] = {"SpacingBetweenSlices",
-                                            "SliceThickness"};
-    if (!(*number > 0) && !csa_numbers(h, "NumberOfImagesInMosaic", number, 1))
-        *number = 0;
-    image->has_normal =
-        csa_numbers(h, "SliceNormalVector", image->normal, 3) == 3;
-    for (int i = 0; i < 2 && !(image->apart > 0); i++)
-        if (csa_numbers(h, distances[i], &image->apart, 1))
-            image->apart_guessed = i == 1;
-}
-
 snow_status snow_dicom_read_mosaic(dicom_reader *reader, dicom_image *image) {
     char type[256];
     double number = 0;
-    csa header;
     image->slices = image->frames;
     snow_dicom_text(reader, 0x00080008, type, sizeof type);
-    const bool says = strstr(type, "MOSAIC") != NULL;
     snow_dicom_shorts(
         reader, private_element(reader, 0x0019, "SIEMENS MR HEADER", 0x0a),
         &number, 1);
-    if (!says && !(number > 1))
+    if (!strstr(type, "MOSAIC") && !(number > 1))
         return SNOW_STATUS_OK;
-    SNOW_TRY(read_csa(reader, &header));
-    take_csa(&header, &number, image);
-    snow_release(reader->context, header.bytes);
+    SNOW_TRY(read_csa(reader, &number, image));
     if (number == 1)
         return SNOW_STATUS_OK;
     image->tiles = -1;
     if (!(number > 1 && number <= UINT16_MAX) || image->frames != 1)
         return SNOW_STATUS_OK;
     const int64_t side = (int64_t)ceil(sqrt(number));
-    image->tiles = -(int)side;
-    if (image->columns % side || image->rows % side)
-        return SNOW_STATUS_OK;
-    image->tiles = (int)side;
-    image->slices = (int64_t)number;
+    const bool whole = !(image->columns % side) && !(image->rows % side);
+    image->tiles = (int)(whole ? side : -side);
+    image->slices = whole ? (int64_t)number : 1;
     return SNOW_STATUS_OK;
 }
 
@@ -186,12 +172,11 @@ void snow_dicom_place_tile(const dicom_image *image, dicom_frame *frame) {
     if (image->tiles < 2)
         return;
     frame->depth = fabs(frame->depth);
-    if (!(frame->depth > 0)) {
-        frame->guessed = image->apart_guessed || !(image->apart > 0);
-        frame->depth = image->apart > 0       ? image->apart
-                       : frame->thickness > 0 ? frame->thickness
-                                              : 1;
-    }
+    if (!(frame->depth > 0))
+        frame->depth = image->apart;
+    frame->guessed = !(frame->depth > 0);
+    if (frame->guessed)
+        frame->depth = frame->thickness > 0 ? frame->thickness : 1;
     const double across =
         (double)(image->columns - snow_dicom_columns(image)) / 2;
     const double down = (double)(image->rows - snow_dicom_rows(image)) / 2;
