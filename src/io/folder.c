@@ -132,6 +132,10 @@ typedef struct names {
     bool below;     /* they are listed */
 } names;
 
+static bool is_too_many(const names *all) {
+    return all->below && all->count + all->folders > MOST_BELOW;
+}
+
 static snow_status list_folder(snow_context *context, const char *folder,
                                const char *pattern, names *all);
 
@@ -178,8 +182,7 @@ static snow_status add_name(snow_context *context, names *all,
 static snow_status collect_names(snow_context *context, DIR *stream,
                                  const char *folder, size_t folder_length,
                                  const char *pattern, names *all) {
-    const size_t most = all->below ? MOST_BELOW : MOST_FILES;
-    for (;;) {
+    while (!is_too_many(all)) {
         errno = 0;
         const struct dirent *entry = readdir(stream);
         if (!entry && errno)
@@ -191,12 +194,13 @@ static snow_status collect_names(snow_context *context, DIR *stream,
             (*pattern && !fits(pattern, entry->d_name)))
             continue;
         SNOW_TRY(add_name(context, all, folder, folder_length, entry->d_name));
-        if (all->count + all->folders > most)
+        if (all->count > MOST_FILES)
             return snow_fail(
                 context, SNOW_STATUS_BAD_INPUT,
                 "has more than %zu files; give a pattern that matches fewer",
-                most);
+                MOST_FILES);
     }
+    return SNOW_STATUS_OK;
 }
 
 /* Makes the caller's list: pointers, followed by the names. */
@@ -240,6 +244,8 @@ static snow_status list_folder(snow_context *context, const char *folder,
 static snow_status list_at(snow_context *context, const char *folder,
                            const char *pattern, names all, snow_folder *out) {
     snow_status status = list_folder(context, folder, pattern, &all);
+    if (is_too_many(&all))
+        all.used = all.count = 0;
     if (status == SNOW_STATUS_OK)
         status = make_list(context, &all, out);
     snow_release(context, all.block);

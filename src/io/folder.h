@@ -38,9 +38,9 @@ bool snow_is_pattern(snow_context *context, const char *path);
 snow_status snow_folder_list(snow_context *context, const char *path,
                              snow_folder *out);
 
-/* The files of the folders below a folder, with those in it: disks have
- * STUDY/SERIES/IM1. At most five levels, in the order of their paths. Errors:
- * as above, and SNOW_STATUS_BAD_INPUT for too many files. */
+/* The files of a folder and of those below it, as on disks that have
+ * STUDY/SERIES/IM1: at most five levels, in the order of their paths; none
+ * where they are more than any disk has. Errors: as above. */
 snow_status snow_folder_list_below(snow_context *context, const char *path,
                                    snow_folder *out);
 
