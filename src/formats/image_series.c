@@ -110,27 +110,20 @@ static int64_t number_at(const char *path, int which) {
     return value;
 }
 
-/* The first name of the form that most names with a number have; *count of
- * them.  Of many forms none is that of a stack. */
-static const char *usual_form(const snow_folder *files, size_t *count,
-                              size_t *numbered) {
-    const char *forms[8], *best = NULL;
-    size_t counts[8] = {0}, used = 0;
-    *count = *numbered = 0;
+/* A name of the form that most names with a number have, if there is one, by
+ * the votes of Boyer and Moore (1981). */
+static const char *usual_form(const snow_folder *files, size_t *numbered) {
+    const char *best = NULL;
+    size_t votes = 0;
+    *numbered = 0;
     for (size_t i = 0; i < files->count; i++) {
         const char *name = snow_path_name(files->paths[i]);
-        size_t n = 0;
         if (!name[strcspn(name, DIGITS)])
             continue;
         ++*numbered;
-        while (n < used && !same_form(forms[n], name))
-            n++;
-        if (n == used && used < 8)
-            forms[used++] = name;
-        if (n < used && ++counts[n] > *count) {
-            *count = counts[n];
-            best = forms[n];
-        }
+        if (!votes)
+            best = name;
+        votes = same_form(best, name) ? votes + 1 : votes - 1;
     }
     return best;
 }
@@ -138,15 +131,17 @@ static const char *usual_form(const snow_folder *files, size_t *count,
 /* Keeps names with a number, as previews and masks beside slices have none; a
  * second name with one is a second stack. */
 static snow_status choose_names(stack *s, snow_folder *files) {
-    size_t count, numbered, kept = 0, left = 0;
+    size_t numbered, count = 0, kept = 0, left = 0;
     char list[160] = "";
-    const char *form = usual_form(files, &count, &numbered);
+    const char *form = usual_form(files, &numbered);
     if (2 * numbered <= files->count) /* letters may be the order */
         return SNOW_STATUS_OK;
+    for (size_t i = 0; i < files->count; i++)
+        count += same_form(form, snow_path_name(files->paths[i]));
     for (size_t i = 0; i < files->count; i++) {
         const char *name = snow_path_name(files->paths[i]);
         const bool has = name[strcspn(name, DIGITS)] != 0;
-        if (has && 2 * count >= numbered && !same_form(form, name))
+        if (has && 2 * count > numbered && !same_form(form, name))
             return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
                              "%s is numbered, but is none of the slices such "
                              "as %s; give a pattern that matches one of them",

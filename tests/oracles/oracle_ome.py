@@ -73,14 +73,14 @@ def in_one_file():
                         ("", b[0, 0])):
         put("b.ome.tif", pages, ROOT % ("", image(b.shape, text)))
         oracle.expect("b.ome.tif", b[0, 0], name=f"defaults {text}")
-    # First indices from 1, and a page of another kind that nothing names.
+    # A page of another kind that nothing names.
     with tifffile.TiffWriter("c.ome.tif") as file:
-        text = "".join(plane(1, 1, z + 1, z + 1) for z in range(4))
+        text = "".join(plane(0, 0, z, z + 1) for z in range(4))
         file.write(np.zeros((9, 9, 3), "u1"), photometric="rgb", metadata=None,
                    description=(ROOT % ("", image(b.shape, text))).encode())
         for page in b[0, 0]:
             file.write(page, photometric="minisblack", metadata=None)
-    oracle.expect("c.ome.tif", b[0, 0], name="from 1")
+    oracle.expect("c.ome.tif", b[0, 0], name="from page 1")
     colours = oracle.sample("u1", (4, 5, 3, 3))
     text = "".join(plane(0, 0, z, 3 - z) for z in range(4))
     put("d.ome.tif", colours[::-1],

@@ -1,5 +1,5 @@
 /* formats/tiff/makers.c - private tags: the missing value of GDAL, planes of
- * MetaMorph's .stk, axes of Zeiss's .lsm. */
+ * MetaMorph's .stk. */
 #include "formats/array.h"
 #include "formats/tiff/tiff.h"
 
@@ -9,7 +9,6 @@
 #if SNOW_HAVE_TIFF && !SNOW_LOADS
 
 #define TAG_UIC2 33629 /* MetaMorph: a value for each plane */
-#define TAG_LSM 34412  /* Zeiss: a record */
 #define TAG_NODATA 42113
 
 /* The values of a tag that libtiff does not know; 0: it is not there, or has
@@ -59,33 +58,10 @@ static void take_stk(TIFF *tiff, tiff_shape *shape) {
     shape->slices = shape->images = planes;
 }
 
-/* Lengths are in metres.  Pages are slices, then times; channels are samples.
- */
-static void take_lsm(TIFF *tiff, tiff_shape *shape) {
-    const void *values = NULL;
-    int32_t sizes[5];
-    double step[3];
-    if (values_of(tiff, TAG_LSM, TIFF_BYTE, &values) < 64 ||
-        snow_machine_big_endian())
-        return;
-    memcpy(sizes, (const char *)values + 8, sizeof sizes);
-    memcpy(step, (const char *)values + 40, sizeof step);
-    if (sizes[2] < 1 || sizes[4] < 1)
-        return;
-    shape->slices = sizes[2];
-    shape->frames = sizes[4];
-    memcpy(shape->order, "XYZTC", sizeof shape->order);
-    for (int i = 0; i < 3; i++)
-        shape->spacing[i] = step[i] > 0 && step[i] < 1 ? step[i] * 1e6 : 0;
-    for (int i = 0; i < 3; i++)
-        memcpy(shape->units[i], "um", 3);
-}
-
 void snow_tiff_read_tags(const snow_tiff *file, const tiff_page *page,
                          tiff_shape *shape) {
     take_nodata(file->tiff, page, shape);
     take_stk(file->tiff, shape);
-    take_lsm(file->tiff, shape);
 }
 
 #endif

@@ -12,7 +12,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #if SNOW_HAVE_TIFF && !SNOW_LOADS
@@ -21,9 +20,8 @@
 typedef struct ome_text {
     snow_context *context;
     tiff_ome *out;
-    const char *wanted; /* a name or a number; NULL: the first that has */
-    const char *own;    /* ... pages in this file; NULL: the first */
-    tiff_ome first;     /* the first, while others are looked at */
+    const char *wanted; /* a name or a number; NULL: the first */
+    const char *own;    /* a file that an image may have pages in; or NULL */
     int64_t number;     /* of the present image */
     bool chosen;        /* it is what is wanted: */
     bool pixels;        /* inside of its planes */
@@ -116,15 +114,17 @@ static snow_status take_run(ome_text *t, const char **attributes) {
     return SNOW_STATUS_OK;
 }
 
-/* Another file of the latest run. */
+/* A file of the latest run, which has one. */
 static snow_status take_file(ome_text *t, const char **attributes) {
     tiff_ome *ome = t->out;
     const char *name = snow_index_attribute(attributes, "FileName");
     tiff_member member = {.state = TIFF_UNKNOWN};
-    if (!ome->run_count || ome->runs[ome->run_count - 1].file)
+    name = name ? name : "";
+    if (ome->has_own < 0 && t->own && !strcmp(name, t->own))
+        ome->has_own = t->number - 1;
+    if (!t->pixels || !ome->run_count || ome->runs[ome->run_count - 1].file)
         return SNOW_STATUS_OK;
-    SNOW_TRY(snow_tiff_keep(t->context, ome, name ? name : "",
-                            name ? strlen(name) : 0, &member.name));
+    SNOW_TRY(snow_tiff_keep(t->context, ome, name, strlen(name), &member.name));
     SNOW_TRY(snow_tiff_keep(t->context, ome, "", 0, &member.uuid));
     SNOW_TRY(SNOW_RESERVE(t->context, ome->members, ome->member_count,
                           ome->member_count + 1));
@@ -183,54 +183,38 @@ static snow_status begin(void *user, const char *name,
         take_channel(t, attributes);
     else if (!strcmp(name, "TiffData") && t->pixels)
         return take_run(t, attributes);
-    else if (!strcmp(name, "UUID") && t->pixels)
+    else if (!strcmp(name, "UUID"))
         return take_file(t, attributes);
     return SNOW_STATUS_OK;
 }
 
-/* Forgets what was read of an image. */
-static snow_status begin_ome(ome_text *t) {
-    tiff_ome *ome = t->out;
-    tiff_member own = {.state = TIFF_UNKNOWN};
-    ome->samples = 1;
-    ome->runs = NULL;
-    ome->members = NULL;
-    ome->text = NULL;
-    ome->run_count = ome->member_count = ome->used = 0;
-    t->channels = 0;
-    snow_tiff_read_text(NULL, &ome->shape);
-    memcpy(ome->shape.order, "XYCZT", sizeof ome->shape.order);
-    SNOW_TRY(snow_tiff_keep(t->context, ome, "", 0, &own.name));
-    own.uuid = own.name;
-    SNOW_TRY(SNOW_RESERVE(t->context, ome->members, 0, 1));
-    ome->members[ome->member_count++] = own;
-    return SNOW_STATUS_OK;
-}
+/* Files that were named before, as far as planes of a file are near to one
+ * another. */
+#define NEAR 1000
 
-/* Puts an image aside that has no pages in the own file. */
-static snow_status look_for_own(ome_text *t) {
-    tiff_ome *ome = t->out;
-    bool has = false;
-    for (size_t i = 0; i < ome->run_count && !has; i++) {
-        const size_t file = ome->runs[i].file;
-        has = !file || !strcmp(ome->text + ome->members[file].name, t->own);
+/* The latest run gets the number of its file, which may be a new one. */
+static void number_file(tiff_ome *ome) {
+    const size_t last = ome->member_count - 1;
+    const char *name = ome->text + ome->members[last].name;
+    const char *uuid = ome->text + ome->members[last].uuid;
+    for (size_t i = last; i-- > 0 && i + NEAR > last;) {
+        const tiff_member *other = &ome->members[i];
+        if (strcmp(ome->text + other->name, name) != 0 ||
+            (!*name && strcmp(ome->text + other->uuid, uuid) != 0))
+            continue;
+        ome->runs[ome->run_count - 1].file = i;
+        ome->member_count--;
+        return;
     }
-    if (has)
-        return SNOW_STATUS_OK;
-    t->done = false;
-    if (t->first.text)
-        snow_tiff_free_ome(t->context, ome);
-    else
-        t->first = *ome;
-    return begin_ome(t);
 }
 
 static snow_status end(void *user, const char *name) {
     ome_text *t = user;
     name = local(name);
-    if (!strcmp(name, "Image") && t->chosen && t->done && t->own && !t->wanted)
-        SNOW_TRY(look_for_own(t));
-    t->uuid = t->uuid && strcmp(name, "UUID") != 0;
+    if (t->uuid && !strcmp(name, "UUID")) {
+        number_file(t->out);
+        t->uuid = false;
+    }
     t->pixels = t->pixels && strcmp(name, "Pixels") != 0;
     return SNOW_STATUS_OK;
 }
@@ -249,61 +233,6 @@ static snow_status text(void *user, const char *at, size_t length) {
     return snow_tiff_keep(t->context, t->out, at, length, &where);
 }
 
-/* Files by their names, else by UUIDs. */
-static int compare_members(const void *a, const void *b) {
-    const tiff_member *x = *(const tiff_member *const *)a;
-    const tiff_member *y = *(const tiff_member *const *)b;
-    int order = strcmp(x->key, y->key);
-    return order ? order : x < y ? -1 : x > y;
-}
-
-/* Runs of one file get its one number. */
-static snow_status join_members(ome_text *t) {
-    tiff_ome *ome = t->out;
-    tiff_member **sorted =
-        snow_allocate_array(t->context, ome->member_count, sizeof *sorted);
-    if (!sorted)
-        return SNOW_STATUS_NO_MEMORY;
-    for (size_t i = 0; i < ome->member_count; i++) {
-        tiff_member *m = sorted[i] = &ome->members[i];
-        m->key = ome->text + (ome->text[m->name] ? m->name : m->uuid);
-        m->same = i;
-    }
-    qsort(sorted, ome->member_count, sizeof *sorted, compare_members);
-    for (size_t i = 1; i < ome->member_count; i++)
-        if (!strcmp(sorted[i]->key, sorted[i - 1]->key))
-            sorted[i]->same = sorted[i - 1]->same;
-        else
-            ome->files++;
-    bool first = false;
-    for (size_t i = 0; i < ome->run_count; i++) {
-        ome->runs[i].file = ome->members[ome->runs[i].file].same;
-        first |= !ome->runs[i].file;
-    }
-    ome->files += first;
-    snow_release(t->context, sorted);
-    return SNOW_STATUS_OK;
-}
-
-static snow_status finish_ome(ome_text *t) {
-    tiff_ome *ome = t->out;
-    if (!t->done && *ome->elsewhere)
-        return SNOW_STATUS_OK;
-    if (!t->done && t->wanted && t->number)
-        return snow_fail(t->context, SNOW_STATUS_BAD_USAGE,
-                         "--dataset %.64s: there is no such image; it has "
-                         "%lld: %s",
-                         t->wanted, (long long)t->number, ome->list);
-    if (!t->done)
-        return snow_fail(t->context, SNOW_STATUS_BAD_INPUT,
-                         "its OME-XML has no image with pixels");
-    if (!ome->run_count) {
-        SNOW_TRY(SNOW_RESERVE(t->context, ome->runs, 0, 1));
-        ome->runs[ome->run_count++] = (tiff_run){.count = 0};
-    }
-    return join_members(t);
-}
-
 snow_status snow_tiff_read_ome(snow_source *source, const char *wanted,
                                const char *own, tiff_ome *out) {
     static const index_xml handlers = {begin, end, text};
@@ -311,26 +240,41 @@ snow_status snow_tiff_read_ome(snow_source *source, const char *wanted,
                   .out = out,
                   .own = own,
                   .wanted = wanted};
-    *out = (tiff_ome){.images = 0};
-    snow_status status = begin_ome(&t);
-    if (status == SNOW_STATUS_OK)
-        status = snow_index_parse(source, &handlers, &t);
-    if (t.first.text && !t.done && status == SNOW_STATUS_OK) {
-        tiff_ome last = *out; /* which knows all images */
-        *out = t.first;
-        memcpy(out->list, last.list, sizeof out->list);
-        out->images = last.images;
-        t.done = true;
-        t.first = last;
+    size_t nothing;
+    *out = (tiff_ome){.has_own = -1};
+    snow_tiff_read_text(NULL, &out->shape);
+    memcpy(out->shape.order, "XYCZT", sizeof out->shape.order);
+    SNOW_TRY(snow_tiff_keep(t.context, out, "", 0, &nothing));
+    SNOW_TRY(SNOW_RESERVE(t.context, out->members, 0, 1));
+    out->members[out->member_count++] = (tiff_member){.name = nothing};
+    SNOW_TRY(snow_index_parse(source, &handlers, &t));
+    if (!t.done && *out->elsewhere)
+        return SNOW_STATUS_OK;
+    if (!t.done && wanted && t.number)
+        return snow_fail(t.context, SNOW_STATUS_BAD_USAGE,
+                         "--dataset %.64s: there is no such image; it has "
+                         "%lld: %s",
+                         wanted, (long long)t.number, out->list);
+    if (!t.done)
+        return snow_fail(t.context, SNOW_STATUS_BAD_INPUT,
+                         "its OME-XML has no image with pixels");
+    if (!out->run_count) {
+        SNOW_TRY(SNOW_RESERVE(t.context, out->runs, 0, 1));
+        out->runs[out->run_count++] = (tiff_run){.count = 0};
     }
-    snow_tiff_free_ome(t.context, &t.first);
-    return status == SNOW_STATUS_OK ? finish_ome(&t) : status;
+    out->files = out->member_count - 1;
+    for (size_t i = 0; i < out->run_count; i++)
+        if (!out->runs[i].file) {
+            out->files++;
+            break;
+        }
+    return SNOW_STATUS_OK;
 }
 
 void snow_tiff_free_ome(snow_context *context, tiff_ome *ome) {
-    snow_release(context, ome->text);
-    snow_release(context, ome->runs);
-    snow_release(context, ome->members);
+    SNOW_DROP(context, ome->text);
+    SNOW_DROP(context, ome->runs);
+    SNOW_DROP(context, ome->members);
 }
 
 #endif

@@ -3,7 +3,6 @@
 #include "formats/tiff/tiff.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #if SNOW_HAVE_TIFF && !SNOW_LOADS
@@ -26,31 +25,16 @@ static struct place place_of(const tiff_plan *plan, int64_t plane) {
 
 /* --- OME ------------------------------------------------------------------ */
 
-/* The places of axes that some programs count from 1. */
-static void find_bases(const tiff_ome *ome, const int64_t sizes[3],
-                       int64_t bases[3]) {
-    for (int i = 0; i < 3; i++) {
-        int64_t least = INT64_MAX, most = 0;
-        for (size_t n = 0; n < ome->run_count; n++) {
-            const int64_t at = ome->runs[n].first[i];
-            least = at < least ? at : least;
-            most = at > most ? at : most;
-        }
-        bases[i] = least == 1 && most == sizes[i];
-    }
-}
-
 /* Pages of a file that is there follow one another in the image's order. */
 static snow_status place_run(tiff_set *set, tiff_plan *plan,
-                             const tiff_run *run, const int64_t bases[3],
-                             int64_t *named) {
+                             const tiff_run *run, int64_t *named) {
     const int64_t sizes[3] = {plan->channels, plan->slices, plan->times};
     const int64_t steps[3] = {plan->channel_step, plan->slice_step,
                               plan->time_step};
     int64_t plane = 0, count = run->count;
     tiff_reader *reader;
     for (int i = 0; i < 3; i++) {
-        int64_t at = run->first[i] - bases[i];
+        int64_t at = run->first[i];
         if (!i && at >= sizes[0] && plan->page.samples > 1)
             at /= plan->page.samples; /* it counts samples */
         if (at >= sizes[i])
@@ -77,10 +61,9 @@ static snow_status place_run(tiff_set *set, tiff_plan *plan,
 
 snow_status snow_tiff_place(tiff_set *set, tiff_plan *plan) {
     const tiff_ome *ome = &set->ome;
-    const int64_t sizes[3] = {plan->channels, plan->slices, plan->times};
     const uint64_t bytes =
         set->own.open ? snow_seekable_size(set->own.file.bytes) : ome->used;
-    int64_t bases[3], named = 0;
+    int64_t named = 0;
     if ((uint64_t)plan->planes > FREE_PLANES + bytes)
         return snow_fail(set->context, SNOW_STATUS_BAD_INPUT,
                          "claims %lld planes, more than it can describe; its "
@@ -91,9 +74,8 @@ snow_status snow_tiff_place(tiff_set *set, tiff_plan *plan) {
     if (!plan->places)
         return SNOW_STATUS_NO_MEMORY;
     memset(plan->places, 0xff, (size_t)plan->planes * sizeof *plan->places);
-    find_bases(ome, sizes, bases);
     for (size_t n = 0; n < ome->run_count; n++)
-        SNOW_TRY(place_run(set, plan, &ome->runs[n], bases, &named));
+        SNOW_TRY(place_run(set, plan, &ome->runs[n], &named));
     return SNOW_STATUS_OK;
 }
 
@@ -250,72 +232,45 @@ snow_status snow_tiff_check_planes(tiff_set *set, const tiff_plan *plan,
 
 /* --- voxels --------------------------------------------------------------- */
 
-/* A slice of the box and its page. */
-typedef struct wanted {
-    struct place at;
-    int64_t z;
-} wanted;
-
-static int compare_wanted(const void *a, const void *b) {
-    const wanted *x = a, *y = b;
-    if (x->at.file != y->at.file)
-        return x->at.file < y->at.file ? -1 : 1;
-    return x->at.page < y->at.page ? -1 : x->at.page > y->at.page;
-}
-
-static snow_status read_wanted(tiff_set *set, const tiff_plan *plan,
-                               const wanted *one, int64_t sample,
-                               const snow_region *region,
-                               unsigned char *slice) {
+static snow_status read_plane(tiff_set *set, const tiff_plan *plan,
+                              struct place at, int64_t sample,
+                              const snow_region *region, unsigned char *slice) {
     tiff_reader *reader = &set->own;
     tiff_page page;
     if (plan->raw)
-        return snow_tiff_read_raw(&reader->file, &plan->page, one->at.page,
-                                  sample, region, slice);
+        return snow_tiff_read_raw(&reader->file, &plan->page, at.page, sample,
+                                  region, slice);
     if (plan->places)
-        SNOW_TRY(snow_tiff_open_member(set, one->at.file, &reader));
-    if (!reader || one->at.page >= reader->count)
-        return SNOW_STATUS_BAD_INPUT; /* it is gone meanwhile */
+        SNOW_TRY(snow_tiff_open_member(set, at.file, &reader));
     *reader->file.complaint = 0;
-    if (!TIFFSetSubDirectory(reader->file.tiff, reader->pages[one->at.page]))
+    if (at.page >= reader->count ||
+        !TIFFSetSubDirectory(reader->file.tiff, reader->pages[at.page]))
         return snow_tiff_fail(&reader->file);
     /* Samples may be interleaved in one page and in planes in the next, with
      * another compression. */
-    SNOW_TRY(snow_tiff_compare(&reader->file, &plan->page, one->at.page));
+    SNOW_TRY(snow_tiff_compare(&reader->file, &plan->page, at.page));
     SNOW_TRY(snow_tiff_describe(&reader->file, &page));
     page.flip = plan->page.flip;
     return snow_tiff_read_page(&reader->file, &page, sample, region, slice);
 }
 
-/* File by file, since one of them is open at a time. */
 snow_status snow_tiff_read_planes(tiff_set *set, const tiff_plan *plan,
                                   int64_t first, int64_t sample,
                                   const snow_region *region,
                                   snow_volume *volume, bool *missing) {
     const size_t slice_bytes = (size_t)(region->count[0] * region->count[1]) *
                                snow_type_size(volume->info.type);
-    const int64_t count = region->count[2];
-    snow_status status = SNOW_STATUS_OK;
-    wanted *all =
-        snow_allocate_array(set->context, (uint64_t)count, sizeof *all);
-    if (!all)
-        return SNOW_STATUS_NO_MEMORY;
-    for (int64_t z = 0; z < count; z++) {
+    for (int64_t z = 0; z < region->count[2]; z++) {
         const int64_t plane = first + (region->first[2] + z) * plan->slice_step;
-        bool is_there = false;
-        all[z] = (wanted){place_of(plan, plane), z};
-        if (status == SNOW_STATUS_OK)
-            status = look(set, plan, plane, true, &is_there);
+        bool is_there;
+        SNOW_TRY(look(set, plan, plane, true, &is_there));
         missing[z] = !is_there;
+        if (is_there)
+            SNOW_TRY(read_plane(
+                set, plan, place_of(plan, plane), sample, region,
+                (unsigned char *)volume->owned + (size_t)z * slice_bytes));
     }
-    qsort(all, (size_t)count, sizeof *all, compare_wanted);
-    for (int64_t i = 0; i < count && status == SNOW_STATUS_OK; i++)
-        if (!missing[all[i].z])
-            status = read_wanted(set, plan, &all[i], sample, region,
-                                 (unsigned char *)volume->owned +
-                                     (size_t)all[i].z * slice_bytes);
-    snow_release(set->context, all);
-    return status;
+    return SNOW_STATUS_OK;
 }
 
 #endif

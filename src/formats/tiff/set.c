@@ -224,15 +224,26 @@ snow_status snow_tiff_open_member(tiff_set *set, size_t n, tiff_reader **out) {
 
 /* --- the XML -------------------------------------------------------------- */
 
+/* The number of the image that the own file has pages of, if that is another
+ * than the first, which was read. */
+static bool prefers(const tiff_set *set, const char *wanted, char number[24]) {
+    snprintf(number, 24, "%lld", (long long)set->ome.has_own);
+    return !wanted && set->ome.has_own > 0;
+}
+
 static snow_status read_text(tiff_set *set, const char *text,
                              const char *wanted) {
     snow_source *memory;
+    char number[24];
     SNOW_TRY(snow_source_open_memory(set->context, "OME-XML", text,
                                      strlen(text), &memory));
     snow_status status =
         snow_tiff_read_ome(memory, wanted, own_name(set), &set->ome);
     snow_source_close(memory);
-    return status;
+    if (status != SNOW_STATUS_OK || !prefers(set, wanted, number))
+        return status;
+    snow_tiff_free_ome(set->context, &set->ome);
+    return read_text(set, text, number);
 }
 
 /* Texts that are no UTF-8 have letters of Latin-1. */
@@ -258,13 +269,12 @@ static snow_status read_letters(tiff_set *set, const char *text,
 
 /* The file that has the XML of this one is another of TIFF, or XML alone. */
 static snow_status follow(tiff_set *set, const char *wanted) {
-    char name[sizeof set->ome.elsewhere];
-    memcpy(name, set->ome.elsewhere, sizeof name);
+    char name[sizeof set->ome.elsewhere], number[24];
     unsigned char bytes[4];
     size_t got;
     snow_source *source;
+    memcpy(name, set->ome.elsewhere, sizeof name);
     snow_tiff_free_ome(set->context, &set->ome);
-    set->ome = (tiff_ome){.samples = 1};
     SNOW_TRY(snow_source_open_sibling(set->own.source, name, &source));
     tiff_reader reader = {.source = source};
     snow_status status = snow_source_peek(source, bytes, 4, &got);
@@ -282,10 +292,12 @@ static snow_status follow(tiff_set *set, const char *wanted) {
             snow_fail(set->context, SNOW_STATUS_BAD_INPUT,
                       "%s, which should describe its planes, does not", name);
     memcpy(set->ome.elsewhere, name, sizeof name);
-    if (status == SNOW_STATUS_OK)
-        status = snow_tiff_keep(set->context, &set->ome, name, strlen(name),
-                                &set->ome.members->name);
-    return status;
+    if (status == SNOW_STATUS_OK && prefers(set, wanted, number))
+        return follow(set, number);
+    return status == SNOW_STATUS_OK
+               ? snow_tiff_keep(set->context, &set->ome, name, strlen(name),
+                                &set->ome.members->name)
+               : status;
 }
 
 /* XML that is damaged says nothing: the pages are slices in their order. */

@@ -22,24 +22,15 @@ typedef struct shape {
 
 /* Reads "2, 5, 64" up to a bracket. */
 static bool read_sizes(const char *text, shape *out) {
-    for (; out->rank < MOST_AXES; text++) {
-        char number[20];
-        text += strspn(text, " ");
-        const size_t digits = strspn(text, "0123456789");
-        if (!digits || digits >= sizeof number)
+    for (int used; out->rank < MOST_AXES; text += used + 1) {
+        long long size;
+        char end;
+        if (sscanf(text, " %18lld %c%n", &size, &end, &used) != 2 || size < 1)
             return false;
-        memcpy(number, text, digits);
-        number[digits] = 0;
-        if (!snow_parse_int64(number, &out->sizes[out->rank]) ||
-            out->sizes[out->rank] < 1)
-            return false;
-        out->rank++;
-        text += digits;
-        text += strspn(text, " ");
-        if (*text == ']' || *text == ')')
+        out->sizes[out->rank++] = size;
+        used--;
+        if (end == ']' || end == ')')
             return true;
-        if (*text != ',')
-            return false;
     }
     return false;
 }
@@ -78,41 +69,29 @@ static bool are_flat(const shape *s, int own) {
     return !*s->axes || !strncmp(axes, "YX", 2);
 }
 
-/* C, Z or T for each axis before those of a page: without a Z the last one that
- * is neither; the others are times. */
-static void name_axes(const shape *s, int count, char roles[MOST_AXES]) {
-    int z = -1;
-    for (int i = 0; i < count; i++) {
-        const char letter = *s->axes ? s->axes[i] : 'Q';
-        roles[i] = letter == 'C' || letter == 'Z' ? letter : 'T';
-        if (letter == 'Z' || (letter != 'C' && letter != 'T' &&
-                              !memchr(s->axes, 'Z', sizeof s->axes)))
-            z = i;
-    }
-    for (int i = 0; i < count && z >= 0; i++)
-        if (roles[i] == 'Z' || i == z)
-            roles[i] = i == z ? 'Z' : 'T';
-}
-
+/* Without a Z the last axis that is no C or T is z; others are times. */
 static snow_status share_out(snow_context *context, const shape *s, int count,
                              tiff_shape *out) {
-    char roles[MOST_AXES], order[] = "XY\0\0\0";
-    int64_t *sizes[3] = {&out->channels, &out->slices, &out->frames};
+    char order[] = "XY\0\0\0";
+    bool has_z = strchr(s->axes, 'Z') != NULL;
     int used = 2;
-    name_axes(s, count, roles);
     out->channels = out->slices = out->frames = 1;
     for (int i = count - 1; i >= 0; i--) {
-        int64_t *size = sizes[strchr("CZT", roles[i]) - "CZT"];
-        if (s->sizes[i] == 1)
-            continue;
-        if (order[used - 1] != roles[i] && strchr(order, roles[i]))
-            return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                             "its axes, %s, are no time steps of volumes; "
-                             "write it again in the order TCZYX",
-                             s->axes);
-        if (order[used - 1] != roles[i])
-            order[used++] = roles[i];
-        *size = *size > INT32_MAX ? INT64_MAX : *size * s->sizes[i];
+        char role = *s->axes ? s->axes[i] : 'Q';
+        if (role != 'C' && role != 'Z')
+            role = role == 'T' || has_z ? 'T' : 'Z';
+        has_z |= role == 'Z';
+        if (s->sizes[i] > 1 && order[used - 1] != role) {
+            if (strchr(order, role))
+                return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                                 "its axes, %s, are no time steps of volumes; "
+                                 "write it again in the order TCZYX",
+                                 s->axes);
+            order[used++] = role;
+        }
+        *(role == 'C'   ? &out->channels
+          : role == 'Z' ? &out->slices
+                        : &out->frames) *= s->sizes[i];
     }
     for (const char *at = "CZT"; *at; at++)
         if (!strchr(order, *at))

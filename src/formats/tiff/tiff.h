@@ -46,8 +46,6 @@ typedef struct tiff_run {
  * or both.  Names are places in the block of text. */
 typedef struct tiff_member {
     size_t name, uuid;
-    const char *key;
-    size_t same;  /* the first member that is this file */
     size_t found; /* the name of a file with its UUID; 0: none is known */
     enum { TIFF_UNKNOWN, TIFF_OWN, TIFF_OTHER, TIFF_ABSENT } state;
     int64_t pages, used; /* of a file that was opened; pages that are wanted */
@@ -57,12 +55,12 @@ typedef struct tiff_member {
 /* The image of an OME-XML that is read. */
 typedef struct tiff_ome {
     tiff_shape shape;
-    int64_t samples;     /* values of a pixel that are channels of their own */
-    int64_t images;      /* in the XML; */
-    int64_t taken;       /* ... the one that is read, from 0 */
-    char list[512];      /* ... their numbers and names, cut */
-    char uuid[64];       /* of the file that the XML is in, "": none */
-    char elsewhere[256]; /* the file with the XML, if it is not this one */
+    int64_t samples; /* values of a pixel that are channels of their own */
+    int64_t images;  /* in the XML; */
+    int64_t taken, has_own; /* ... read; with pages in a file, -1: none */
+    char list[512];         /* ... their numbers and names, cut */
+    char uuid[64];          /* of the file that the XML is in, "": none */
+    char elsewhere[256];    /* the file with the XML, if it is not this one */
     tiff_run *runs;
     tiff_member *members;
     size_t run_count, member_count, files; /* files that have planes */
@@ -70,8 +68,8 @@ typedef struct tiff_ome {
     size_t used;
 } tiff_ome;
 
-/* Reads XML: of several images that of a name, a number or an ID, for NULL the
- * first that has pages in the file `own`, else the first.  The caller frees it
+/* Reads XML: of several images that of a name, a number or an ID, or the first
+ * for NULL; notes which has pages in the file `own`.  The caller frees it
  * whatever the status.  Errors: SNOW_STATUS_BAD_INPUT (damaged),
  * SNOW_STATUS_BAD_USAGE (no such image). */
 snow_status snow_tiff_read_ome(snow_source *source, const char *wanted,
