@@ -31,7 +31,7 @@ set(SNOW_LABEL_late
     cli_interrupt cli_limits cli_measurements cli_ranks cli_real
     cli_shear_warp cli_show mpi_comm oracle_amr oracle_cf oracle_damage oracle_dicom oracle_fit
     oracle_hdf5 oracle_mgh oracle_mosaic oracle_mrc oracle_netcdf oracle_nifti oracle_npy
-    oracle_orientation oracle_pictures
+    oracle_ome oracle_orientation oracle_pictures
     oracle_seg oracle_series oracle_slice oracle_tiff oracle_vtk oracle_zarr test_comm
     test_histogram test_model_encodings
     test_phantom test_raycast test_splat_threads test_stream)
@@ -66,7 +66,7 @@ set(SNOW_COSTS
     oracle_damage 25 package_manual 24 package_within 22 cli_bench 22
     oracle_netcdf 22 oracle_hdf5 21 test_pipeline 21 mpi_insitu 21
     test_histogram 20 cli_again 20 test_stop 18 cli_channels 18 cli_shear_warp 17
-    cli_interrupt 17 serve_fuzz 16 oracle_tiff 16 test_raycast 15 cli_render 15
+    oracle_tiff 20 cli_interrupt 17 serve_fuzz 16 test_raycast 15 cli_render 15
     mpi_comm 14 test_insitu 14 package_site 14 oracle_orientation 13
     serve_hostile 13 oracle_dicom 13 oracle_slice 13
     test_model_picture 13 cli_progress 12 oracle_seg 12 test_truth 12

@@ -1,10 +1,9 @@
 /* formats/tiff/tiff.c - TIFF files whose pages are slices: .tif.
  *
  * Pages are slices from z = 0 on, the first in front, with row 0 at the top.
- * Descriptions by ImageJ and OME give the order of channels, slices and times,
- * and the size of a voxel.  Values are read as stored: neither palettes nor
- * "white is zero" change them.  Bits become uint8 of 0 and 1, half floats
- * float32, 24-bit integers 32-bit ones. */
+ * Descriptions by ImageJ, tifffile and OME give the order of channels, slices
+ * and times, and the size of a voxel.  Palettes do not change values.  Half
+ * floats become float32, integers the next larger type. */
 #include "formats/tiff/tiff.h"
 #include "formats/array.h"
 #include "formats/features.h"
