@@ -29,8 +29,7 @@ typedef enum snow_type {
 #undef SNOW_TYPE_ENUM
 } snow_type;
 
-/* Bytes of one value (0 for SNOW_TYPE_NONE); the type's name ("none"); the type
- * of a name ("float" and "double" too), SNOW_TYPE_NONE when unknown. */
+/* Bytes of a value, 0 of NONE; its name; the type of a name ("float", too). */
 SNOW_API size_t snow_type_size(snow_type type);
 SNOW_API const char *snow_type_name(snow_type type);
 SNOW_API snow_type snow_type_from_name(const char *name);

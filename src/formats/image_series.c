@@ -141,10 +141,10 @@ static snow_status choose_names(stack *s, snow_folder *files) {
     for (size_t i = 0; i < files->count; i++) {
         const char *name = snow_path_name(files->paths[i]);
         const bool has = name[strcspn(name, DIGITS)] != 0;
-        if (has && 2 * count > numbered && !same_form(form, name))
+        if (has && 2 * count >= numbered && !same_form(form, name))
             return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
-                             "%s is numbered, but is none of the slices such "
-                             "as %s; give a pattern that matches one of them",
+                             "%s has a number, but is not named as the other "
+                             "slices, such as %s; give a pattern of one name",
                              name, form);
         if (has) {
             files->paths[kept++] = files->paths[i];
@@ -312,7 +312,8 @@ static bool is_set(const stack *s, const snow_volume_options *options) {
     s->context->warning = NULL;
     stack whole = *s;
     whole.options = any;
-    const bool is = read_file(&whole, 0, &info, NULL) == SNOW_STATUS_OK &&
+    const bool is = !strcmp(s->format->name, "tiff") &&
+                    read_file(&whole, 0, &info, NULL) == SNOW_STATUS_OK &&
                     sscanf(info.storage, SNOW_SET_OF_FILES, &files) == 1 &&
                     files >= s->files->count;
     s->context->warning = warning;

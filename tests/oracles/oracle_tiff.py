@@ -279,6 +279,7 @@ for names, more, said in (
         ("2020-01-02_%d.tif", (), None),
         ("s_%03d.tif", ("view_1.tif",), 3), ("s_%03d.tif", ("s_9_old.tif",), 3),
         ("s_%03d.tif", ("s_002 (1).tif",), 3),
+        ("s_%d.tif", [f"t_{z}.tif" for z in range(5, 10)], 3),
         ("z_%d_c0.tif", ("z_0_c1.tif",), 3), ("z_%d_c0.tif", ("z_7_c0.tif",), 3)):
     oracle.empty_folder("names")
     for z in range(5):
