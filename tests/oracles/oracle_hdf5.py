@@ -282,6 +282,21 @@ with h5py.File("v.h5", "a") as file:
     file["VTKHDF/PointData"].attrs["Scalars"] = np.bytes_("d")
 oracle.refuse("v.h5", "holds 3 volumes", status=2)
 
+# Imaris fills up chunks, and writes numbers as letters.
+a = oracle.sample("u2", (4, 5, 16))
+letters = lambda text: np.array([c.encode() for c in str(text)], "S1")
+with h5py.File("i.ims", "w") as file:
+    channel = file.create_group("DataSet/ResolutionLevel 0/TimePoint 0/Channel 0")
+    channel["Data"] = np.pad(a, ((0, 4), (0, 3), (0, 0)))
+    image = file.create_group("DataSetInfo/Image")
+    image.attrs["Unit"] = letters("um")
+    for n, size in enumerate((16, 5, 4)):
+        channel.attrs["ImageSize" + "XYZ"[n]] = letters(size)
+        image.attrs[f"ExtMin{n}"] = letters(10.5)
+        image.attrs[f"ExtMax{n}"] = letters(10.5 + size * (n + 0.25))
+oracle.expect("i.ims", a, oracle.affine((0.25, 1.25, 2.25),
+                                        (10.625, 11.125, 11.625)), unit="um")
+
 # Refused: other files' voxels, filters that are not there, cut files.
 with h5py.File("h.h5", "w") as file:
     layout = h5py.VirtualLayout((20, 30, 40), "<f4")

@@ -41,11 +41,6 @@ cf_number snow_cf_number(double value) {
     return number;
 }
 
-/* Copies a text to a room, of which a longer one fills all. */
-static void keep(const char *text, char *to, size_t capacity) {
-    snprintf(to, capacity, "%.*s", (int)capacity - 1, text);
-}
-
 static void take_text(const char *name, const char *text, cf_attributes *out) {
     const struct {
         const char *name;
@@ -64,7 +59,8 @@ static void take_text(const char *name, const char *text, cf_attributes *out) {
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         if (!strcmp(name, texts[i].name) && !(texts[i].second && *texts[i].to))
-            keep(text, texts[i].to, texts[i].capacity);
+            snprintf(texts[i].to, texts[i].capacity, "%.*s",
+                     (int)texts[i].capacity - 1, text);
     if (!strcmp(name, "_Unsigned"))
         out->sign = snow_same_name(text, "true")    ? 1
                     : snow_same_name(text, "false") ? -1

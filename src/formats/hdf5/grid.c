@@ -392,7 +392,8 @@ void snow_hdf5_place(snow_context *context, const hdf5_file *file,
                      snow_uneven *grid) {
     char group[HDF5_NAME_BYTES];
     if (place_by_size(set, info) || place_by_mesh(file, set->id, set, info) ||
-        snow_hdf5_place_image(file, set, info))
+        snow_hdf5_place_image(file, set, info) ||
+        snow_hdf5_place_imaris(file, set, info))
         return;
     memcpy(group, set->path, sizeof group);
     char *slash = strrchr(group, '/');

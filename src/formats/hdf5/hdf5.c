@@ -287,6 +287,7 @@ static snow_status read_step(snow_context *context, const hdf5_file *file,
         own.time = 0;
     }
     SNOW_TRY(snow_hdf5_find(context, id, own.dataset, &set));
+    snow_hdf5_trim_imaris(file, &set);
     snow_status status = read_set(context, file, &set, &own, info, out);
     H5Dclose(set.id);
     if (status != SNOW_STATUS_OK || !series.given)

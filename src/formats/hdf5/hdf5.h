@@ -6,6 +6,7 @@
  *   text.c    texts of attributes
  *   grid.c    attributes -> geometry
  *   meaning.c attributes -> quantity, unit, time, conversion of values
+ *   imaris.c  Imaris' own attributes -> sizes, geometry
  *   vtkhdf.c  VTK's own attributes -> geometry, time
  *   filters.c the stored bytes of a chunk -> its elements
  *   chunks.c  chunks, or what else is stored -> a box of elements
@@ -123,6 +124,12 @@ void snow_hdf5_place(snow_context *context, const hdf5_file *file,
                      const hdf5_set *set, const hdf5_axes *axes,
                      const snow_volume_options *options, snow_volume_info *info,
                      snow_uneven *grid);
+
+/* Data of Imaris: leaves out what fills up chunks; sets the matrix, and is
+ * false for other data. */
+void snow_hdf5_trim_imaris(const hdf5_file *file, hdf5_set *set);
+bool snow_hdf5_place_imaris(const hdf5_file *file, const hdf5_set *set,
+                            snow_volume_info *info);
 
 /* The array that VTK's file says is active; false: none. */
 bool snow_hdf5_active_image(const hdf5_file *file, char path[HDF5_NAME_BYTES]);

@@ -1,0 +1,91 @@
+/* formats/hdf5/imaris.c - files of Imaris (imaris.oxinst.com, "Imaris 5.5 File
+ * Format"), whose numbers are texts, a letter an element:
+ *
+ *     /DataSet/ResolutionLevel 0/TimePoint 0/Channel 0
+ *       ImageSizeX, Y, Z   voxels; those of Data beyond them fill up chunks
+ *       Data
+ *     /DataSetInfo/Image
+ *       ExtMin0 .. ExtMax2 the box of all voxels, x first
+ *       Unit */
+#include "formats/hdf5/hdf5.h"
+
+#if SNOW_HAVE_HDF5
+
+#include <math.h>
+#include <string.h>
+
+/* The text of an attribute of letters, or of one text. */
+static void read_letters(const hdf5_file *file, hid_t object, const char *name,
+                         char out[32]) {
+    const size_t count = snow_hdf5_text(file, object, name, 0, out, 32);
+    char letter[2];
+    for (size_t n = 1; n < count && n < 31; n++) {
+        snow_hdf5_text(file, object, name, n, letter, sizeof letter);
+        out[n] = *letter;
+        out[n + 1] = 0;
+    }
+}
+
+static double read_number(const hdf5_file *file, hid_t object, const char *name,
+                          int axis, const char *axes) {
+    char whole[16] = "", text[32];
+    double value = NAN;
+    memcpy(whole, name, strlen(name));
+    whole[strlen(name)] = axes[axis];
+    read_letters(file, object, whole, text);
+    return snow_parse_double(text, &value) ? value : NAN;
+}
+
+/* Opens the group of the channel; -1: the data set is none of Imaris. */
+static hid_t open_channel(const hdf5_file *file, const hdf5_set *set) {
+    char path[HDF5_NAME_BYTES];
+    memcpy(path, set->path, sizeof path);
+    char *slash = strrchr(path, '/');
+    if (strncmp(path, "/DataSet/ResolutionLevel ", 25) != 0 ||
+        strcmp(slash, "/Data") != 0 || set->axes != 3)
+        return -1;
+    *slash = 0;
+    return H5Oopen(snow_hdf5_id(file), path, H5P_DEFAULT);
+}
+
+void snow_hdf5_trim_imaris(const hdf5_file *file, hdf5_set *set) {
+    hid_t channel = open_channel(file, set);
+    for (int i = 0; i < 3 && channel >= 0; i++) {
+        const double size = read_number(file, channel, "ImageSize", i, "XYZ");
+        if (size >= 1 && size < (double)set->sizes[2 - i])
+            set->sizes[2 - i] = (hsize_t)size;
+    }
+    if (channel >= 0)
+        H5Oclose(channel);
+}
+
+bool snow_hdf5_place_imaris(const hdf5_file *file, const hdf5_set *set,
+                            snow_volume_info *info) {
+    const hid_t id = snow_hdf5_id(file), channel = open_channel(file, set);
+    hid_t image = channel >= 0 && H5Lexists(id, "DataSetInfo", H5P_DEFAULT) > 0
+                      ? H5Oopen(id, "DataSetInfo/Image", H5P_DEFAULT)
+                      : -1;
+    char unit[32] = "";
+    double step[3], low[3];
+    bool given = image >= 0;
+    for (int i = 0; i < 3 && given; i++) {
+        low[i] = read_number(file, image, "ExtMin", i, "012");
+        step[i] = (read_number(file, image, "ExtMax", i, "012") - low[i]) /
+                  (double)set->sizes[2 - i];
+        given = isfinite(step[i]) && step[i] > 0;
+    }
+    for (int i = 0; i < 3 && given; i++) {
+        info->matrix[i][i] = step[i];
+        info->matrix[i][3] = low[i] + step[i] / 2;
+    }
+    if (given)
+        read_letters(file, image, "Unit", unit);
+    memcpy(info->unit, unit, strnlen(unit, sizeof info->unit - 1));
+    if (image >= 0)
+        H5Oclose(image);
+    if (channel >= 0)
+        H5Oclose(channel);
+    return given;
+}
+
+#endif
