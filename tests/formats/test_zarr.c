@@ -108,6 +108,30 @@ static void chunks_that_are_missing_are_filled_and_told(void **state) {
     snow_volume_close(volume);
 }
 
+/* Whichever chunk is the first one that is stored. */
+static void chunks_are_found_where_they_lie(void **state) {
+    support_files *files = *state;
+    static records r;
+    const unsigned char ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
+    const struct {
+        const char *name, *keys, *note;
+    } rows[] = {
+        {"0/0/1", PLAIN, "\"/\" between"},
+        {"0.0.1", PLAIN ", \"dimension_separator\": \"/\"", "\".\" between"}};
+    for (size_t n = 0; n < 2; n++) {
+        snow_volume *volume;
+        describe(&r, "[2, 2, 4]", "[2, 2, 2]", rows[n].keys);
+        add_bytes(&r, rows[n].name, ones, sizeof ones);
+        assert_int_equal(open_records(files, &r, "", NULL, &volume),
+                         SNOW_STATUS_OK);
+        const uint8_t *voxels = snow_volume_voxels(volume);
+        for (int i = 0; i < 16; i++)
+            assert_int_equal(voxels[i], i % 4 < 2 ? 7 : 1);
+        assert_non_null(strstr(files->warnings, rows[n].note));
+        snow_volume_close(volume);
+    }
+}
+
 /* The volume, and a chunk. */
 static void memory_is_that_of_the_volume_and_a_chunk(void **state) {
     support_files *files = *state;
@@ -242,6 +266,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         SUPPORT_TEST(only_the_chunks_of_a_box_are_read),
         SUPPORT_TEST(chunks_that_are_missing_are_filled_and_told),
+        SUPPORT_TEST(chunks_are_found_where_they_lie),
         SUPPORT_TEST(memory_is_that_of_the_volume_and_a_chunk),
         SUPPORT_TEST(sizes_that_lie_take_no_memory),
         SUPPORT_TEST(paths_do_not_climb),

@@ -288,7 +288,7 @@ static snow_status describe_variable(netcdf_job *job,
     return SNOW_STATUS_OK;
 }
 
-static size_t read_at(void *user, uint64_t at, void *bytes, size_t size) {
+static size_t copy_held(void *user, uint64_t at, void *bytes, size_t size) {
     return snow_seekable_read(user, at, bytes, size);
 }
 
@@ -298,7 +298,7 @@ static snow_status read_array(void *user, const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
     netcdf_job *job = user;
     snow_source *again = NULL;
-    const snow_bytes_behind behind = {read_at, job->bytes,
+    const snow_bytes_behind behind = {copy_held, job->bytes,
                                       snow_seekable_size(job->bytes)};
     if (job->done || snow_seekable_held(job->bytes))
         SNOW_TRY(snow_source_open_with(snow_source_context(job->source),
