@@ -60,9 +60,12 @@ snow_axis_hint snow_cf_hint(const cf_words *words) {
 }
 
 /* Longitudes may go on from 355 with 0, or from 180 with -175: once. */
-static void unwrap(double *coordinates, int64_t count, const char *units) {
+static void unwrap(double *coordinates, int64_t count,
+                   const cf_attributes *says) {
     int64_t at = 0, jumps = 0;
-    for (int64_t i = 1; i < count && !strncmp(units, "degree", 6); i++)
+    const bool angles = !strncmp(says->units, "degree", 6) ||
+                        !strcmp(says->standard_name, "longitude");
+    for (int64_t i = 1; i < count && angles; i++)
         if (fabs(coordinates[i] - coordinates[i - 1]) > 180) {
             at = i;
             jumps++;
@@ -87,7 +90,7 @@ static bool is_down(const cf_attributes *says) {
 void snow_cf_measure(double *coordinates, int64_t count,
                      const cf_attributes *says, cf_axis *out) {
     *out = (cf_axis){.even = true, .coordinates = coordinates};
-    unwrap(coordinates, count, says->units);
+    unwrap(coordinates, count, says);
     double first = coordinates[0], last = coordinates[count - 1];
     double step = count > 1 ? (last - first) / (double)(count - 1) : 0;
     take_unit(says->units, out->unit);
