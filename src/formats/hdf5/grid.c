@@ -23,24 +23,6 @@
 /* The most data sets that use one scale. */
 #define MOST_USES 65536
 
-int snow_hdf5_numbers(hid_t object, const char *name, int most, double *out) {
-    if (H5Aexists(object, name) <= 0)
-        return 0;
-    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
-    if (attribute < 0)
-        return 0;
-    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
-    H5T_class_t kind = H5Tget_class(type);
-    hssize_t count = H5Sget_simple_extent_npoints(space);
-    bool right = (kind == H5T_INTEGER || kind == H5T_FLOAT) && count >= 1 &&
-                 count <= most &&
-                 H5Aread(attribute, H5T_NATIVE_DOUBLE, out) >= 0;
-    H5Sclose(space);
-    H5Tclose(type);
-    H5Aclose(attribute);
-    return right ? (int)count : 0;
-}
-
 static void read_text(const hdf5_file *file, hid_t object, const char *name,
                       char *out, size_t capacity) {
     snow_hdf5_text(file, object, name, 0, out, capacity);

@@ -148,11 +148,7 @@ void snow_hdf5_hint_image(const hdf5_file *file, const hdf5_set *set,
  * it is missing or has other values. */
 int snow_hdf5_numbers(hid_t object, const char *name, int most, double *out);
 
-/* Reads an attribute; returns false if there is none. */
-bool snow_hdf5_attribute(const hdf5_file *file, hid_t object, const char *name,
-                         cf_attribute *out);
-
-/* Reads those that the conventions have. */
+/* Reads the attributes that the conventions have. */
 void snow_hdf5_attributes(const hdf5_file *file, hid_t object,
                           cf_attributes *out);
 

@@ -14,43 +14,54 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The numbers of an attribute, integers exactly too. */
-static void read_numbers(hid_t attribute, hid_t type, cf_attribute *out) {
-    const bool whole = H5Tget_class(type) == H5T_INTEGER;
-    const bool plus = whole && H5Tget_sign(type) == H5T_SGN_NONE;
+/* Reads an open attribute; of integers all bits. */
+static void read_numbers(hid_t attribute, cf_attribute *out) {
+    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    const hssize_t count = H5Sget_simple_extent_npoints(space);
+    const H5T_class_t kind = H5Tget_class(type);
+    const bool plus = kind == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_NONE;
     double values[CF_MOST_NUMBERS];
     uint64_t bits[CF_MOST_NUMBERS];
-    if (out->count > CF_MOST_NUMBERS)
+    H5Tclose(type);
+    H5Sclose(space);
+    if (count < 1 || (kind != H5T_INTEGER && kind != H5T_FLOAT))
         return;
-    if ((!whole && H5Tget_class(type) != H5T_FLOAT) ||
-        H5Aread(attribute, H5T_NATIVE_DOUBLE, values) < 0 ||
-        (whole &&
-         H5Aread(attribute, plus ? H5T_NATIVE_UINT64 : H5T_NATIVE_INT64, bits) <
-             0))
-        out->count = 0;
-    for (int64_t i = 0; i < out->count; i++)
-        out->numbers[i] =
-            whole ? (cf_number){values[i], bits[i]} : snow_cf_number(values[i]);
+    if (count <= CF_MOST_NUMBERS &&
+        (H5Aread(attribute, H5T_NATIVE_DOUBLE, values) < 0 ||
+         (kind == H5T_INTEGER &&
+          H5Aread(attribute, plus ? H5T_NATIVE_UINT64 : H5T_NATIVE_INT64,
+                  bits) < 0)))
+        return;
+    out->count = count;
+    for (hssize_t i = 0; i < count && count <= CF_MOST_NUMBERS; i++)
+        out->numbers[i] = kind == H5T_INTEGER ? (cf_number){values[i], bits[i]}
+                                              : snow_cf_number(values[i]);
 }
 
-bool snow_hdf5_attribute(const hdf5_file *file, hid_t object, const char *name,
-                         cf_attribute *out) {
+static bool read_attribute(const hdf5_file *file, hid_t object,
+                           const char *name, cf_attribute *out) {
     memset(out, 0, sizeof *out);
     if (H5Aexists(object, name) <= 0)
         return false;
-    if (snow_hdf5_text(file, object, name, 0, out->text, sizeof out->text))
+    if (file &&
+        snow_hdf5_text(file, object, name, 0, out->text, sizeof out->text))
         return true;
     hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
     if (attribute < 0)
         return false;
-    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
-    const hssize_t count = H5Sget_simple_extent_npoints(space);
-    out->count = count > 0 ? count : 0;
-    read_numbers(attribute, type, out);
-    H5Sclose(space);
-    H5Tclose(type);
+    read_numbers(attribute, out);
     H5Aclose(attribute);
     return true;
+}
+
+int snow_hdf5_numbers(hid_t object, const char *name, int most, double *out) {
+    cf_attribute given;
+    if (!read_attribute(NULL, object, name, &given) || given.count > most ||
+        given.count > CF_MOST_NUMBERS)
+        return 0;
+    for (int64_t i = 0; i < given.count; i++)
+        out[i] = given.numbers[i].value;
+    return (int)given.count;
 }
 
 void snow_hdf5_attributes(const hdf5_file *file, hid_t object,
@@ -58,7 +69,7 @@ void snow_hdf5_attributes(const hdf5_file *file, hid_t object,
     cf_attribute given;
     snow_cf_attributes_begin(out);
     for (const char *const *name = snow_cf_names; *name; name++)
-        if (snow_hdf5_attribute(file, object, *name, &given))
+        if (read_attribute(file, object, *name, &given))
             snow_cf_take(*name, &given, out);
 }
 

@@ -147,6 +147,18 @@ static cf_number take_value(cursor *c, uint64_t type) {
     }
 }
 
+bool snow_netcdf_values(const netcdf_header *header, snow_seekable *bytes,
+                        const netcdf_variable *v, int64_t count, double *out) {
+    cursor c = {.context = header->context, .bytes = bytes};
+    const uint64_t step =
+        v->records ? header->record_bytes : snow_type_size(v->type);
+    for (int64_t i = 0; i < count && c.status == SNOW_STATUS_OK; i++) {
+        c.at = v->begin + (uint64_t)i * step;
+        out[i] = take_value(&c, v->kind).value;
+    }
+    return c.status == SNOW_STATUS_OK;
+}
+
 /* Takes what is kept of an attribute; the position stays. */
 static void take_attribute(cursor *c, uint64_t type, int64_t count,
                            cf_attribute *out) {
@@ -252,7 +264,7 @@ static void take_variable(cursor *c, netcdf_header *header,
     take_axes(c, header, v);
     v->attributes = c->at;
     take_attributes(c, NULL, NULL);
-    uint64_t type = take_number(c, 4);
+    uint64_t type = v->kind = take_number(c, 4);
     v->type = type_of(type);
     if (c->status == SNOW_STATUS_OK && !type_bytes(type))
         fail_header(c, "its NetCDF header has an unknown type; it is damaged");

@@ -165,25 +165,7 @@ static const netcdf_variable *coordinates_of(const netcdf_header *header,
     return found;
 }
 
-/* Reads the variable's values as data into an array of that size; returns false
- * if they are truncated. */
-static bool read_coordinates(const netcdf_header *header,
-                             const netcdf_variable *v, snow_seekable *bytes,
-                             const snow_volume *line, double *out) {
-    size_t size = snow_type_size(v->type), count = (size_t)line->info.dims[0];
-    uint64_t step = v->records ? header->record_bytes : size;
-    size_t part = step == size ? count * size : size;
-    for (size_t i = 0; i < count * size / part; i++)
-        if (snow_seekable_read(bytes, v->begin + i * step,
-                               (char *)line->owned + i * part, part) < part)
-            return false;
-    if (!snow_machine_big_endian())
-        snow_swap_bytes(line->owned, count, size);
-    snow_volume_stored(line, 0, count, out);
-    return true;
-}
-
-/* A volume of one row serves to convert the values to doubles. */
+/* Coordinates that are truncated are none. */
 static snow_status read_axis(const netcdf_header *header, snow_seekable *bytes,
                              int64_t dimension, cf_axis *out) {
     int64_t count = header->dimensions[dimension].size;
@@ -192,23 +174,19 @@ static snow_status read_axis(const netcdf_header *header, snow_seekable *bytes,
     if (!v || count < 1 || count > CF_MOST_COORDINATES ||
         (uint64_t)count > snow_seekable_size(bytes))
         return SNOW_STATUS_OK;
-    snow_volume_info info = snow_volume_info_default("netcdf");
-    snow_volume *line;
-    info.dims[0] = count;
-    info.type = v->type;
-    SNOW_TRY(snow_volume_new(header->context, &info, &line));
     double *values =
         snow_allocate_array(header->context, (uint64_t)count, sizeof *values);
-    bool read = values && read_coordinates(header, v, bytes, line, values);
-    snow_volume_close(line);
-    if (read) {
-        const cf_values stored =
-            snow_cf_settle(header->context, &says, v->type, true);
-        snow_cf_decode(&stored, count, values);
-        snow_cf_measure(values, count, &says, out);
-    } else
+    if (!values)
+        return SNOW_STATUS_NO_MEMORY;
+    if (!snow_netcdf_values(header, bytes, v, count, values)) {
         snow_release(header->context, values);
-    return values ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+        return SNOW_STATUS_OK;
+    }
+    const cf_values stored =
+        snow_cf_settle(header->context, &says, v->type, true);
+    snow_cf_decode(&stored, count, values);
+    snow_cf_measure(values, count, &says, out);
+    return SNOW_STATUS_OK;
 }
 
 /* The meaning of each axis. */
@@ -334,25 +312,17 @@ static void look_for_minc(void *user, const char *name,
               !strcmp(given->text, "MINC standard variable");
 }
 
-/* MINC scales each slice by tables of its own.  Its image is called so, beside
- * its limits or the root of its variables, or has the mark of MINC. */
-static snow_status refuse_minc(const netcdf_header *header,
-                               snow_seekable *bytes) {
-    bool image = false, beside = false;
-    for (int64_t i = 0; i < header->variable_count; i++) {
+/* MINC scales each slice by tables of its own. */
+static bool is_minc(const netcdf_header *header, snow_seekable *bytes) {
+    bool found = false;
+    for (int64_t i = 0; i < header->variable_count && !found; i++) {
         const netcdf_variable *v = &header->variables[i];
-        if (!strcmp(v->name, "image")) {
-            image = true;
-            snow_netcdf_attributes(header, bytes, v, look_for_minc, &beside);
-        }
-        beside |=
+        found =
             !strcmp(v->name, "image-max") || !strcmp(v->name, "rootvariable");
+        if (!strcmp(v->name, "image"))
+            snow_netcdf_attributes(header, bytes, v, look_for_minc, &found);
     }
-    if (!image || !beside)
-        return SNOW_STATUS_OK;
-    return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
-                     "is a MINC file, whose values are scaled slice by slice; "
-                     "convert it with mnc2nii");
+    return found;
 }
 
 static snow_status read_file(snow_source *source, snow_seekable *bytes,
@@ -361,7 +331,10 @@ static snow_status read_file(snow_source *source, snow_seekable *bytes,
                              snow_volume_info *info, snow_volume **out) {
     netcdf_job job = {.source = source, .bytes = bytes, .header = header};
     snow_volume *volume = NULL;
-    SNOW_TRY(refuse_minc(header, bytes));
+    if (is_minc(header, bytes))
+        return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
+                         "is a MINC file, whose values are scaled slice by "
+                         "slice; convert it with mnc2nii");
     SNOW_TRY(find_variable(header, options->dataset, &job.variable));
     snow_status status = read_job(&job, options, info, out ? &volume : NULL);
     snow_cf_release(header->context, job.axes, 4);

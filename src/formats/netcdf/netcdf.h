@@ -34,6 +34,7 @@ typedef struct netcdf_variable {
     bool records;                   /* its first axis counts records */
     uint64_t bytes; /* of the variable, or of its part of a record */
     uint64_t begin;
+    uint64_t kind;       /* NetCDF's number of the type */
     uint64_t attributes; /* where they begin */
 } netcdf_variable;
 
@@ -52,6 +53,11 @@ typedef struct netcdf_header {
 snow_status snow_netcdf_read_header(snow_context *context, snow_seekable *bytes,
                                     netcdf_header *out);
 void snow_netcdf_free_header(netcdf_header *header);
+
+/* Reads the values of a variable with one axis; returns false if they are
+ * truncated. */
+bool snow_netcdf_values(const netcdf_header *header, snow_seekable *bytes,
+                        const netcdf_variable *v, int64_t count, double *out);
 
 /* Gives each attribute of a variable to `take`. */
 typedef void netcdf_take_fn(void *user, const char *name,
