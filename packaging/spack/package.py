@@ -27,6 +27,7 @@ class Snowglass(CMakePackage):
     variant("blosc", default=True, description="Read Zarr packed by Blosc")
     variant("zstd", default=True, description="Read Zarr packed by Zstandard")
     variant("lz4", default=True, description="Read Zarr packed by LZ4")
+    variant("bzip2", default=True, description="Read NRRD packed by bzip2")
     variant("expat", default=True, description="Read VTI, presets of Slicer")
 
     depends_on("c", type="build")
@@ -54,6 +55,7 @@ class Snowglass(CMakePackage):
     depends_on("c-blosc@1.16:", when="+blosc")
     depends_on("zstd@1.3:", when="+zstd")
     depends_on("lz4@1.8:", when="+lz4")
+    depends_on("bzip2", when="+bzip2")
     depends_on("expat", when="+expat")
 
     def cmake_args(self):
@@ -62,6 +64,7 @@ class Snowglass(CMakePackage):
         args = [self.define("BUILD_TESTING", self.run_tests),
                 self.define("SNOW_CATALYST", False)]
         for name in ("mpi", "python", "serve", "hdf5", "tiff", "gdcm", "exr",
-                     "webp", "jpeg", "blosc", "zstd", "lz4", "expat"):
+                     "webp", "jpeg", "blosc", "zstd", "lz4", "bzip2",
+                     "expat"):
             args.append(self.define_from_variant("SNOW_" + name.upper(), name))
         return args

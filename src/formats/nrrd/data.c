@@ -54,8 +54,7 @@ static snow_status go_to_data(snow_source *source, const nrrd_header *header,
                               bool attached, uint64_t size, bool *at_end) {
     *at_end = false;
     SNOW_TRY(skip_lines(source, header->line_skip));
-    if (header->encoding == NRRD_GZIP)
-        SNOW_TRY(snow_source_unpack(source));
+    SNOW_TRY(snow_nrrd_unpack(source, header->encoding));
     if (header->encoding ==
         NRRD_ASCII) /* at least a digit and a separator each */
         size = 2 * (size / snow_type_size(header->type)) - 1;

@@ -63,16 +63,13 @@ static const name_value type_names[] = {
     {NULL, 0},
 };
 
-/* Not supported: bzip2 (another library for a rare case), hex and zrl (very
- * rare). */
+/* Not supported: zrl (in no document of the format). */
 static const name_value encoding_names[] = {
-    {"raw", NRRD_RAW},
-    {"gzip", NRRD_GZIP},
-    {"gz", NRRD_GZIP},
-    {"ascii", NRRD_ASCII},
-    {"text", NRRD_ASCII},
-    {"txt", NRRD_ASCII},
-    {NULL, 0},
+    {"raw", NRRD_RAW},     {"gzip", NRRD_GZIP},
+    {"gz", NRRD_GZIP},     {"bzip2", NRRD_BZIP2},
+    {"bz2", NRRD_BZIP2},   {"hex", NRRD_HEX},
+    {"ascii", NRRD_ASCII}, {"text", NRRD_ASCII},
+    {"txt", NRRD_ASCII},   {NULL, 0},
 };
 
 /* Kinds of several values: complex numbers, vectors, colours, tensors. */

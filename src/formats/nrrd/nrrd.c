@@ -94,7 +94,7 @@ static snow_status read_nrrd(snow_source *source,
 
 const snow_format snow_format_nrrd = {
     .name = "nrrd",
-    .text = "NRRD, attached or detached; raw, gzip, ascii (.nrrd, .nhdr)",
+    .text = "NRRD, attached or detached, in all encodings (.nrrd, .nhdr)",
     .suffixes = {".nrrd", ".nhdr", ".nrrd.gz"},
     .probe = looks_nrrd,
     .crops = true,

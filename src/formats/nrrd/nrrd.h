@@ -4,7 +4,8 @@
  *   header.c  nrrd_text  -> nrrd_header  numbers and names parsed
  *   grid.c    axes       -> volume info  the spatial axes, the matrix
  *   files.c   data file  -> nrrd_files   the files with the voxels
- *   data.c    files      -> voxels       through the encoding
+ *   data.c    files      -> voxels
+ *   unpack.c  the encodings of binary data
  *
  * formats/ascii.c reads the encoding "ascii".
  *
@@ -79,7 +80,13 @@ typedef struct nrrd_text {
     size_t segment_count;
 } nrrd_text;
 
-typedef enum nrrd_encoding { NRRD_RAW, NRRD_GZIP, NRRD_ASCII } nrrd_encoding;
+typedef enum nrrd_encoding {
+    NRRD_RAW,
+    NRRD_GZIP,
+    NRRD_BZIP2,
+    NRRD_HEX,
+    NRRD_ASCII
+} nrrd_encoding;
 
 /* What an axis of the array is. */
 typedef enum nrrd_role {
@@ -156,6 +163,10 @@ snow_status snow_nrrd_lay_out(snow_context *context, nrrd_header *header,
 
 snow_status snow_nrrd_find_files(snow_context *context, const nrrd_text *text,
                                  const nrrd_header *header, nrrd_files *out);
+
+/* Declares that the bytes from here on are in the encoding; ascii is left to
+ * those who read numbers. */
+snow_status snow_nrrd_unpack(snow_source *source, nrrd_encoding encoding);
 
 /* Writes the name of file `index` as a string into `name`; `*at`, NULL before
  * the first call, keeps the position in a list, whose files are requested in

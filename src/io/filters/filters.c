@@ -12,6 +12,11 @@ snow_status snow_source_unpack_blocks(snow_source *source,
     return snow_filter_stage_open_blocks(source->top, blocks, &source->top);
 }
 
+snow_status snow_source_unpack_by(snow_source *source,
+                                  snow_open_stage_fn *open) {
+    return open(source->top, &source->top);
+}
+
 /* Only for base64 text, whose end is not verified: a file has a definite end,
  * and a packed stream is read to its check sum. */
 snow_status snow_source_promise(snow_source *source, uint64_t size,

@@ -15,6 +15,13 @@ snow_status snow_source_unpack_base64(snow_source *source);
 snow_status snow_source_unpack_blocks(snow_source *source,
                                       const snow_blocks *blocks);
 
+/* Declares that from here on the bytes are in an encoding of which `open` adds
+ * a stage (io/filters/filter.h), which owns the one below on success. */
+typedef snow_status snow_open_stage_fn(snow_filter_stage *below,
+                                       snow_filter_stage **out);
+snow_status snow_source_unpack_by(snow_source *source,
+                                  snow_open_stage_fn *open);
+
 /* Declares that `size` more bytes follow, from a header, if the source does not
  * know: they are the remaining ones from here on. Rejected, as by
  * snow_source_expect, if there cannot be as many. */
