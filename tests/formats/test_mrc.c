@@ -143,6 +143,12 @@ static void headers_that_lie_are_refused(void **state) {
         support_bad_file(files, write_map(files, &m), cases[i].part);
     }
     map m = plain();
+    put_whole(&m, 24, 1 << 30); /* bytes that nothing is left of */
+    snow_volume_close(support_opened(files, write_map(files, &m), NULL));
+    assert_non_null(strstr(files->warnings, "extended header is missing"));
+    put_whole(&m, 3, 1);
+    support_bad_file(files, write_map(files, &m), "too early");
+    m = plain();
     support_bad_file(files, support_write(files, "s.mrc", m.bytes, 1000),
                      "too early");
     for (int i = 0; i < 3; i++)

@@ -676,6 +676,16 @@ static void layers_of_segments_have_labels_of_their_own(void **state) {
     }
 }
 
+/* As 3D Slicer and pynrrd have written them: a field twice, no direction. */
+static void fields_that_say_nothing_more_are_no_matter(void **state) {
+    support_files *files = *state;
+    expect_place(files, "mm",
+                 RAW "space: RAS\nspace: RAS\nspace directions: none none "
+                     "none\nkinds: domain domain domain\nspacings: 2 1 3\n\n",
+                 (double[]){2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 3, 0});
+    assert_string_equal(files->warnings, "");
+}
+
 static void unknown_spacings_are_one(void **state) {
     support_files *files = *state;
     expect_place(files, "", RAW "spacings: 2 nan 1\n\n",
@@ -706,7 +716,7 @@ static void other_values_of_voxels_are_refused(void **state) {
 
 static void contradictions_are_refused(void **state) {
     static const char *const cases[][2] = {
-        {RAW "type: float\n\n", "occurs twice"},
+        {RAW "type: float\n\n", "twice with different"},
         {MAGIC SIZES "encoding: raw\n\n", "\"type\""},
         {MAGIC "type: block\n" SIZES "encoding: raw\nblock size: 4\n\n",
          "block"},
@@ -1074,6 +1084,7 @@ int main(void) {
         SUPPORT_TEST(volumes_that_lie_apart_are_found),
         SUPPORT_TEST(values_of_voxels_may_be_in_text_and_files),
         SUPPORT_TEST(layers_of_segments_have_labels_of_their_own),
+        SUPPORT_TEST(fields_that_say_nothing_more_are_no_matter),
         SUPPORT_TEST(unknown_spacings_are_one),
         SUPPORT_TEST(other_values_of_voxels_are_refused),
         SUPPORT_TEST(contradictions_are_refused),

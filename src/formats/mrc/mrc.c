@@ -322,6 +322,14 @@ static snow_status read_mrc(snow_source *source,
             "its sizes are too large for any file; correct the header");
     memcpy(array.step, steps, sizeof array.step);
     array.first = (uint64_t)info->time * steps[3];
+    /* Copies of a header may speak of an extended one that was not copied. */
+    if (extended && snow_source_remaining(source) == (int64_t)array.all) {
+        snow_notify(context,
+                    "its extended header is missing: the voxels begin at byte "
+                    "%d",
+                    HEADER_BYTES);
+        extended = 0;
+    }
     SNOW_TRY(snow_source_skip(source, extended, "the extended header"));
     return snow_array_read(source, options, &array, info, out);
 }

@@ -393,12 +393,13 @@ static snow_status parse_directions(snow_context *context,
                                     const nrrd_text *text, int dimension,
                                     nrrd_header *out) {
     const char *at = snow_nrrd_value(text, NRRD_DIRECTIONS);
-    out->directions = at != NULL;
-    for (int i = 0; at && i < out->dimension; i++)
+    for (int i = 0; at && i < out->dimension; i++) {
         if (!next_direction(&at, dimension, &out->axes[i]))
             return fail_field(
                 context, text, NRRD_DIRECTIONS,
                 "does not have one vector or \"none\" for each axis");
+        out->directions = out->directions || out->axes[i].directed;
+    }
     if (at && has_more(at))
         return fail_field(context, text, NRRD_DIRECTIONS,
                           "has more vectors than there are axes");

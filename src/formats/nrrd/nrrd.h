@@ -115,7 +115,7 @@ typedef struct nrrd_header {
     bool big_endian;
     int dimension;
     nrrd_axis axes[NRRD_MOST_AXES];
-    bool directions;  /* the field exists */
+    bool directions;  /* some axis has one */
     double origin[4]; /* 0 if not given */
     double turn[3];   /* 1 or -1: converts world axes to right-handed or RAS+ */
     bool medical;

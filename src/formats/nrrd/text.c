@@ -130,13 +130,18 @@ static snow_status take_line(snow_context *context, nrrd_text *text,
     if (colon && colon[1] != '=') {
         nrrd_field field = field_named(line, (size_t)(colon - line));
         if (field != NRRD_FIELD_COUNT) {
+            const char *value = (colon + 1) + strspn(colon + 1, " \t");
+            /* 3D Slicer has written some twice. */
+            if (text->value[field] &&
+                !strcmp(snow_nrrd_value(text, field), value))
+                return SNOW_STATUS_OK;
             if (text->value[field])
                 return snow_fail(
                     context, SNOW_STATUS_BAD_INPUT,
-                    "the header's field \"%s\" occurs twice; delete one",
+                    "the header's field \"%s\" occurs twice with different "
+                    "values; delete one",
                     snow_nrrd_field_name(field));
-            return append(context, text, (colon + 1) + strspn(colon + 1, " \t"),
-                          &text->value[field]);
+            return append(context, text, value, &text->value[field]);
         }
     }
     if (strstr(line, ":="))
