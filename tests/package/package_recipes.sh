@@ -96,7 +96,7 @@ if [ -n "$python" ] && "$python" -c 'import yaml' 2>/dev/null; then
         'import yaml; m = yaml.safe_load(open("meta.yaml"))
 print(m["package"]["version"], len(m["requirements"]["host"]))
 print(*m["test"]["requires"])'
-    prints "^$version 14$"
+    prints "^$version 15$"
     # A test has what it requires and the package, which needs no pkg-config.
     prints '^pkg-config$'
 else

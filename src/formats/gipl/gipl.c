@@ -12,8 +12,8 @@
  *
  * The origin is the first voxel in LPS, as ITK has it; of MIRTK, which tells
  * directions too, it is the centre of the volume in RAS. */
+#include "formats/bytes/number.h"
 #include "formats/format.h"
-#include "formats/number.h"
 
 #include <math.h>
 

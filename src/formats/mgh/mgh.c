@@ -15,7 +15,7 @@
  * Behind the voxels stand repetition time, other numbers of the scan, and the
  * commands that made the file, which are not used. */
 #include "formats/array.h"
-#include "formats/number.h"
+#include "formats/bytes/number.h"
 #include "io/filters/filters.h"
 
 #include <math.h>

@@ -7,8 +7,8 @@
  * The array is selected by name; by default it is the one that the file calls
  * its scalars, otherwise the first; arrays of points have priority over those
  * of cells. */
+#include "formats/bytes/lz4.h"
 #include "formats/features.h"
-#include "formats/lz4.h"
 #include "formats/vtk/vti.h"
 
 #if SNOW_HAVE_EXPAT

@@ -1,6 +1,6 @@
-/* formats/number.h - numbers in binary headers, in either byte order. */
-#ifndef SNOW_FORMATS_NUMBER_H
-#define SNOW_FORMATS_NUMBER_H
+/* formats/bytes/number.h - numbers in binary headers, in either byte order. */
+#ifndef SNOW_FORMATS_BYTES_NUMBER_H
+#define SNOW_FORMATS_BYTES_NUMBER_H
 
 #include <stdbool.h>
 #include <stdint.h>

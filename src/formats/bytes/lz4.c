@@ -1,5 +1,5 @@
-/* formats/lz4.c - unpacks blocks by liblz4. */
-#include "formats/lz4.h"
+/* formats/bytes/lz4.c - unpacks blocks by liblz4. */
+#include "formats/bytes/lz4.h"
 #include "formats/features.h"
 
 #if SNOW_HAVE_LZ4

@@ -1,6 +1,6 @@
-/* formats/lz4.h - blocks of LZ4, of Zarr and VTK. */
-#ifndef SNOW_FORMATS_LZ4_H
-#define SNOW_FORMATS_LZ4_H
+/* formats/bytes/lz4.h - blocks of LZ4, of Zarr and VTK. */
+#ifndef SNOW_FORMATS_BYTES_LZ4_H
+#define SNOW_FORMATS_BYTES_LZ4_H
 
 #include "base/base.h"
 
