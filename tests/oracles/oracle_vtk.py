@@ -166,6 +166,29 @@ for mode in MODES:
     write_vti(grid, "a.vti", mode, True, 64, False)
     oracle.expect("a.vti", c, matrix_of(grid, True))
 
+# Values of several channels in MetaImage, by VTK's copy of MetaIO; the places are
+# LPS.  Kinds of NRRD with several values are in test_nrrd.c.
+for kind, name in (("u1", "MET_UCHAR"), ("i2", "MET_SHORT_ARRAY"),
+                   ("f4", "MET_FLOAT")):
+    values = oracle.sample(kind, (7, 6, 5, 3))
+    oracle.put("m.raw", values.tobytes())
+    oracle.put("m.mhd", f"NDims = 3\nDimSize = 5 6 7\nElementType = {name}\n"
+               "ElementNumberOfChannels = 3\nElementSpacing = 1 2 3\n"
+               "Offset = 4 5 6\nElementDataFile = m.raw\n")
+    if name.endswith("_ARRAY"): # which VTK lacks
+        read = values
+    else:
+        reader = vtk.vtkMetaImageReader()
+        reader.SetFileName("m.mhd")
+        reader.Update()
+        read = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+        read = read.reshape(values.shape)
+    for channel in range(3):
+        oracle.expect("m.mhd", read[..., channel],
+                      np.diag([-1, -1, 1, 1]) @
+                      oracle.affine((1, 2, 3), (4, 5, 6)),
+                      ["--channel", channel], name=f"MetaImage {kind}")
+
 # Legacy files.
 for version in (42, 51):
     for binary in (False, True):
