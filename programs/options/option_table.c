@@ -204,9 +204,9 @@ const option_row option_table[] = {
      "a point or a unit, such as 0.3s, takes the step nearest to that physical "
      "time (default 0; movie: all)"},
     {"dataset", 0, "PATH", TOPIC_DATA, INPUT, read_text, FIELD(dataset), 0, 0,
-     "array to read from a file with several: path or name, or the level of an "
-     "OME-Zarr image (default: the only one; of VTK, XDMF and AMReX the file's "
-     "scalars, else the first)"},
+     "array to read from a file with several: path or name, the level of an "
+     "OME-Zarr image, or an image of an OME-TIFF by name or number (default: the "
+     "only one; of VTK, XDMF and AMReX the file's scalars, else the first)"},
     {"channel", 0, "N|NAME|LIST", TOPIC_DATA,
      INPUT, read_channels, FIELD(channels), 0, 0, "channel of voxels with several values, by number from 0 or by name; or "
      "those that a picture mixes, each with colour, range and opacity, such as "

@@ -85,8 +85,6 @@ static void take_channel(ome_text *t, const char **attributes) {
     const char *name = snow_index_attribute(attributes, "Name");
     const char *color = snow_index_attribute(attributes, "Color");
     int64_t rgba;
-    if (!t->channels)
-        t->out->samples = whole(attributes, "SamplesPerPixel", 1);
     if (t->channels == SNOW_CHANNELS_MAX)
         return;
     snow_channel *out = &t->out->shape.channel[t->channels++];

@@ -109,21 +109,20 @@ typedef struct gaps {
 static void add_gap(gaps *g, const tiff_plan *plan, int64_t c, int64_t t,
                     int64_t first, int64_t last) {
     const size_t used = strlen(g->text), room = sizeof g->text - used;
-    char where[80] = "", range[48] = "";
+    char step[40] = "", channel[40] = "", end[40] = "";
     if (room < 120) {
-        memcpy(g->text + used, used && g->text[used - 1] != '.' ? " ..." : "",
-               used && g->text[used - 1] != '.' ? 5 : 1);
+        if (g->text[used - 1] != '.')
+            memcpy(g->text + used, "; ...", 6);
         return;
     }
     if (plan->times > 1)
-        snprintf(where, sizeof where, "time step %lld, ", (long long)t);
+        snprintf(step, sizeof step, "time step %lld, ", (long long)t);
     if (plan->channels > 1)
-        snprintf(where + strlen(where), sizeof where - strlen(where),
-                 "channel %lld, ", (long long)c);
+        snprintf(channel, sizeof channel, "channel %lld, ", (long long)c);
     if (last > first)
-        snprintf(range, sizeof range, " to %lld", (long long)last);
-    snprintf(g->text + used, room, "%s%sslice %lld%s", used ? "; " : "", where,
-             (long long)first, range);
+        snprintf(end, sizeof end, " to %lld", (long long)last);
+    snprintf(g->text + used, room, "%s%s%sslice %lld%s", used ? "; " : "", step,
+             channel, (long long)first, end);
 }
 
 /* Looks for slices of one channel and step. */
@@ -181,22 +180,6 @@ static snow_status check_sizes(const tiff_set *set, const tiff_plan *plan) {
     return SNOW_STATUS_OK;
 }
 
-/* Says what other steps and channels lack: those that are whole are opened. */
-static snow_status note_others(tiff_set *set, const tiff_plan *plan,
-                               int64_t channel, int64_t time) {
-    gaps g = {.count = 0};
-    for (int64_t t = 0; t < plan->times; t++)
-        for (int64_t c = 0; c < plan->channels; c++)
-            if (c != channel || t != time)
-                SNOW_TRY(find_gaps(set, plan, c, t, false, &g));
-    if (g.count)
-        snow_notify(set->context,
-                    "%lld of %lld slices of other steps and channels are "
-                    "missing: %s",
-                    (long long)g.count, (long long)g.all, g.text);
-    return SNOW_STATUS_OK;
-}
-
 /* A small file must not cost gigabytes of nothing. */
 snow_status snow_tiff_check_count(const tiff_set *set, int64_t present,
                                   int64_t all) {
@@ -227,7 +210,18 @@ snow_status snow_tiff_check_planes(tiff_set *set, const tiff_plan *plan,
         snow_notify(set->context,
                     "%lld of %lld slices are missing, and have no values: %s",
                     (long long)g.count, (long long)g.all, g.text);
-    return note_others(set, plan, channel, time);
+    gaps others = {.count = 0};
+    for (int64_t t = 0; t < plan->times && !options->each_time; t++)
+        for (int64_t c = 0; c < plan->channels; c++)
+            if (c != channel || t != time)
+                SNOW_TRY(find_gaps(set, plan, c, t, false, &others));
+    if (others.count)
+        snow_notify(set->context,
+                    "%lld of %lld slices of other steps and channels are "
+                    "missing: %s",
+                    (long long)others.count, (long long)others.all,
+                    others.text);
+    return SNOW_STATUS_OK;
 }
 
 /* --- voxels --------------------------------------------------------------- */

@@ -55,8 +55,7 @@ typedef struct tiff_member {
 /* The image of an OME-XML that is read. */
 typedef struct tiff_ome {
     tiff_shape shape;
-    int64_t samples; /* values of a pixel that are channels of their own */
-    int64_t images;  /* in the XML; */
+    int64_t images;         /* in the XML; */
     int64_t taken, has_own; /* ... read; with pages in a file, -1: none */
     char list[512];         /* ... their numbers and names, cut */
     char uuid[64];          /* of the file that the XML is in, "": none */
