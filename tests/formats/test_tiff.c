@@ -2,13 +2,17 @@
  * and what is refused.  What others write is compared in oracle_tiff.py. */
 #include "support/files.h"
 
-/* Index of the library among those of snow_library_name. */
+#include <math.h>
+
+/* Indices of libraries among those of snow_library_name. */
+#define EXPAT 0
 #define LIBTIFF 1
 
 typedef struct tiff {
     unsigned char bytes[4096];
     size_t size;
-    size_t link; /* where the next page's place is told */
+    size_t link;      /* where the next page's place is told */
+    const char *text; /* the next page's description, or NULL */
 } tiff;
 
 static void put(tiff *t, size_t at, size_t size, uint64_t value) {
@@ -28,22 +32,36 @@ static void begin(tiff *t) {
 static void add_page(tiff *t, uint32_t width, uint16_t bits, int fill,
                      uint16_t tag, uint32_t value) {
     uint32_t bytes = width * 2 * bits / 8, data = (uint32_t)t->size;
+    const size_t letters = t->text ? strlen(t->text) + 1 : 0;
+    const uint32_t words = data + bytes + bytes % 2;
     const uint32_t entries[][3] = {
-        /* tag, type (3: 16 bits, 4: 32), value */
-        {254, 4, 0}, {256, 4, width}, {257, 4, 2},    {258, 3, bits},
-        {259, 3, 1}, {262, 3, 1},     {273, 4, data}, {277, 3, 1},
-        {278, 4, 2}, {279, 4, bytes}, {339, 3, 1},
+        /* tag, type (2: text, 3: 16 bits, 4: 32), value */
+        {254, 4, 0},
+        {256, 4, width},
+        {257, 4, 2},
+        {258, 3, bits},
+        {259, 3, 1},
+        {262, 3, 1},
+        {letters ? 270 : 269, 2, words},
+        {273, 4, data},
+        {277, 3, 1},
+        {278, 4, 2},
+        {279, 4, bytes},
+        {339, 3, 1},
     };
     size_t count = sizeof entries / sizeof *entries;
     memset(t->bytes + t->size, fill, bytes);
-    t->size += bytes + bytes % 2;
+    if (letters)
+        memcpy(t->bytes + words, t->text, letters);
+    t->size = words + letters + letters % 2;
+    t->text = NULL;
     put(t, t->link, 4, t->size);
     put(t, t->size, 2, count);
     for (size_t i = 0; i < count; i++) {
         size_t at = t->size + 2 + 12 * i;
         put(t, at, 2, entries[i][0]);
         put(t, at + 2, 2, entries[i][1]);
-        put(t, at + 4, 4, 1);
+        put(t, at + 4, 4, entries[i][1] == 2 ? letters : 1);
         put(t, at + 8, 4, entries[i][0] == tag ? value : entries[i][2]);
     }
     t->link = t->size + 2 + 12 * count;
@@ -65,6 +83,66 @@ static void small_copies_are_no_slices(void **state) {
     const uint8_t *voxels = snow_volume_voxels(volume);
     assert_int_equal(snow_volume_get_info(volume)->dims[2], 2);
     assert_true(voxels[0] == 1 && voxels[8] == 2);
+    snow_volume_close(volume);
+}
+
+#define OME(planes)                                                         \
+    "<OME><Image><Pixels SizeC='1' SizeT='1' SizeZ='2' SizeX='4' SizeY='2'" \
+    " DimensionOrder='XYZCT'>" planes "</Pixels></Image></OME>"
+
+static void a_plane_is_the_page_that_its_description_names(void **state) {
+    support_files *files = *state;
+    static const struct {
+        const char *text;
+        int first, second; /* of pages 1, 2 and 3; 0: missing */
+    } cases[] = {
+        {OME("<TiffData FirstZ='1' IFD='0'/><TiffData IFD='2'/>"), 3, 1},
+        {OME("<TiffData IFD='1' PlaneCount='2'/>"), 2, 3},
+        {OME("<TiffData/>"), 1, 2},
+        {OME("<TiffData FirstZ='1' IFD='1'/>"), 0, 2},
+        {OME("<TiffData IFD='2' PlaneCount='2'/>"), 3, 0},
+        {"ImageJ=1.53t\nimages=2\nslices=2\n", 1, 2},
+        {"{\"shape\": [2, 2, 4]}", 1, 2},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const bool gap = !cases[i].first || !cases[i].second;
+        const snow_volume_options gaps = {.size = sizeof gaps,
+                                          .allow_gaps = true};
+        const char *expat = NULL, *formats;
+        tiff t;
+        snow_library_name(EXPAT, &expat, &formats);
+        if (!expat && *cases[i].text == '<')
+            continue;
+        begin(&t);
+        t.text = cases[i].text;
+        for (int page = 1; page <= 3; page++)
+            add_page(&t, 4, 8, page, 0, 0);
+        const char *path = write_tiff(files, &t);
+        if (gap)
+            support_bad_file(files, path, "1 of 2 slices are missing");
+        snow_volume *volume = support_opened(files, path, &gaps);
+        assert_int_equal(snow_volume_get_info(volume)->dims[2], 2);
+        for (int z = 0; z < 2; z++) {
+            const int page = z ? cases[i].second : cases[i].first;
+            const float *floats = snow_volume_voxels(volume);
+            const uint8_t *bytes = snow_volume_voxels(volume);
+            if (page)
+                assert_true(gap ? floats[8 * z] == (float)page
+                                : bytes[8 * z] == page);
+            else
+                assert_true(isnan(floats[8 * z]));
+        }
+        snow_volume_close(volume);
+    }
+}
+
+static void white_zeros_are_inverted(void **state) {
+    support_files *files = *state;
+    tiff t;
+    begin(&t);
+    add_page(&t, 4, 8, 5, 262, 0);
+    snow_volume *volume = support_opened(files, write_tiff(files, &t), NULL);
+    assert_int_equal(*(const uint8_t *)snow_volume_voxels(volume), 250);
     snow_volume_close(volume);
 }
 
@@ -108,6 +186,8 @@ static void sizes_that_the_file_cannot_hold_cost_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         SUPPORT_TEST(small_copies_are_no_slices),
+        SUPPORT_TEST(a_plane_is_the_page_that_its_description_names),
+        SUPPORT_TEST(white_zeros_are_inverted),
         SUPPORT_TEST(pages_that_lie_are_refused),
         SUPPORT_TEST(sizes_that_the_file_cannot_hold_cost_nothing),
     };
