@@ -131,7 +131,7 @@ void snow_hdf5_trim_imaris(const hdf5_file *file, hdf5_set *set);
 bool snow_hdf5_place_imaris(const hdf5_file *file, const hdf5_set *set,
                             snow_volume_info *info);
 
-/* The array that VTK's file says is active; false: none. */
+/* The one of several arrays that VTK's file says is active; false: none. */
 bool snow_hdf5_active_image(const hdf5_file *file, char path[HDF5_NAME_BYTES]);
 
 /* Image data that VTK wrote: the first sets the matrix, and is false for other

@@ -41,21 +41,27 @@ static hid_t open_root(const hdf5_file *file, const hdf5_set *set) {
 bool snow_hdf5_active_image(const hdf5_file *file, char path[HDF5_NAME_BYTES]) {
     static const char *const groups[] = {ROOT "/PointData", ROOT "/CellData"};
     const hid_t id = snow_hdf5_id(file);
-    char name[128] = "";
+    const bool is_vtk = H5Lexists(id, ROOT, H5P_DEFAULT) > 0;
+    char name[128];
     bool found = false;
-    for (int i = 0; i < 2 && !found && H5Lexists(id, ROOT, H5P_DEFAULT) > 0;
-         i++) {
-        hid_t group = H5Lexists(id, groups[i], H5P_DEFAULT) > 0
-                          ? H5Oopen(id, groups[i], H5P_DEFAULT)
+    hsize_t arrays = 0;
+    for (int i = 0; i < 2; i++) {
+        hid_t group = is_vtk && H5Lexists(id, groups[i], H5P_DEFAULT) > 0
+                          ? H5Gopen2(id, groups[i], H5P_DEFAULT)
                           : -1;
+        H5G_info_t about;
         if (group < 0)
             continue;
+        if (H5Gget_info(group, &about) >= 0)
+            arrays += about.nlinks;
         snow_hdf5_text(file, group, "Scalars", 0, name, sizeof name);
-        snprintf(path, HDF5_NAME_BYTES, "%s/%s", groups[i], name);
-        found = *name && H5Lexists(group, name, H5P_DEFAULT) > 0;
-        H5Oclose(group);
+        if (!found && *name && H5Lexists(group, name, H5P_DEFAULT) > 0) {
+            snprintf(path, HDF5_NAME_BYTES, "%s/%s", groups[i], name);
+            found = true;
+        }
+        H5Gclose(group);
     }
-    return found;
+    return found && arrays > 1;
 }
 
 bool snow_hdf5_place_image(const hdf5_file *file, const hdf5_set *set,

@@ -270,18 +270,26 @@ static size_t copy_held(void *user, uint64_t at, void *bytes, size_t size) {
     return snow_seekable_read(user, at, bytes, size);
 }
 
+typedef size_t copy_fn(void *user, uint64_t at, void *bytes, size_t size);
+
+/* Opens the bytes anew, at their beginning. */
+static snow_status open_again(const netcdf_job *job, copy_fn *copy,
+                              snow_source **out) {
+    const snow_bytes_behind behind = {.read_at = copy,
+                                      .user = job->bytes,
+                                      .size = snow_seekable_size(job->bytes)};
+    return snow_source_open_with(snow_source_context(job->source),
+                                 snow_source_name(job->source), &behind, out);
+}
+
 /* Reads a box of stored voxels: from the source if that is still before them,
  * otherwise from what was kept of it, or once more from its place. */
 static snow_status read_array(void *user, const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
     netcdf_job *job = user;
     snow_source *again = NULL;
-    const snow_bytes_behind behind = {copy_held, job->bytes,
-                                      snow_seekable_size(job->bytes)};
     if (job->done || snow_seekable_held(job->bytes))
-        SNOW_TRY(snow_source_open_with(snow_source_context(job->source),
-                                       snow_source_name(job->source), &behind,
-                                       &again));
+        SNOW_TRY(open_again(job, copy_held, &again));
     job->done |= out != NULL;
     snow_status status = snow_array_read(again ? again : job->source, options,
                                          &job->array, info, out);
