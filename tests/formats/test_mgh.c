@@ -117,6 +117,18 @@ static void what_stands_behind_the_voxels_is_no_matter(void **state) {
                      "damaged");
 }
 
+/* Without zeros in its middle it is known by its name alone. */
+static void raw_data_are_no_header(void **state) {
+    support_files *files = *state;
+    const snow_volume_options last = {.size = sizeof last, .time = -1};
+    mgh_file file = make(0, 1);
+    file.bytes[200] = 1;
+    snow_volume_close(support_opened(files, put_file(files, &file), &last));
+    support_bad_file(files,
+                     support_write(files, "a.bin", file.bytes, file.size),
+                     "unknown format");
+}
+
 static void damaged_files_are_refused(void **state) {
     support_files *files = *state;
     static const struct {
@@ -151,6 +163,7 @@ int main(void) {
         SUPPORT_TEST(every_type_and_frame_is_read),
         SUPPORT_TEST(the_place_is_that_of_the_centre),
         SUPPORT_TEST(what_stands_behind_the_voxels_is_no_matter),
+        SUPPORT_TEST(raw_data_are_no_header),
         SUPPORT_TEST(damaged_files_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -36,13 +36,22 @@ static int64_t whole(const unsigned char *header, int at) {
 }
 
 /* Sizes from 1, a type that has a code, and a flag. */
-static bool probe_mgh(const unsigned char *bytes, size_t size) {
-    if (size < HEADER_BYTES || bytes[0] || bytes[1] || bytes[3] != 1)
+static bool is_header(const unsigned char *bytes) {
+    if (bytes[0] || bytes[1] || bytes[3] != 1)
         return false;
     for (int i = 0; i < 4; i++)
         if (whole(bytes, 4 + 4 * i) < 1 || whole(bytes, 4 + 4 * i) >= MOST_SIZE)
             return false;
     return whole(bytes, 20) <= 10 && snow_number_at(bytes + 28, 2, true) <= 1;
+}
+
+/* Raw data may look so too, but not with zeros behind: those of another name
+ * are taken to be raw. */
+static bool probe_mgh(const unsigned char *bytes, size_t size) {
+    bool zeros = size >= HEADER_BYTES && is_header(bytes);
+    for (int i = 90; i < HEADER_BYTES && zeros; i++)
+        zeros = !bytes[i];
+    return zeros;
 }
 
 /* What a file without a place has: FreeSurfer's slices from front to back. */
@@ -89,7 +98,7 @@ static void place(snow_context *context, const unsigned char *header,
 
 static snow_status parse(snow_context *context, const unsigned char *header,
                          snow_volume_info *info) {
-    if (!probe_mgh(header, HEADER_BYTES))
+    if (!is_header(header))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "the first 284 bytes are not a header of FreeSurfer's "
                          "MGH; get the file again");
