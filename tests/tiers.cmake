@@ -30,7 +30,7 @@ set(SNOW_LABEL_late
     catalyst cli_again cli_background cli_bench cli_figures
     cli_interrupt cli_limits cli_measurements cli_ranks cli_real
     cli_shear_warp cli_show mpi_comm oracle_amr oracle_cf oracle_damage oracle_dicom oracle_fit
-    oracle_hdf5 oracle_mgh oracle_mosaic oracle_mrc oracle_netcdf oracle_nifti oracle_npy
+    oracle_hdf5 oracle_mosaic oracle_mrc oracle_netcdf oracle_nibabel oracle_npy
     oracle_ome oracle_orientation oracle_pictures
     oracle_seg oracle_series oracle_slice oracle_tiff oracle_vtk oracle_zarr test_comm
     test_histogram test_model_encodings

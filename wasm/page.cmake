@@ -18,7 +18,7 @@ macro(add_script head)
   file(APPEND ${OUT}.new "<script${head}>\n${text}\n</script>\n")
 endmacro()
 
-execute_process(COMMAND gzip -9nc INPUT_FILE ${ENGINE_FILE} OUTPUT_FILE ${OUT}.gz
+execute_process(COMMAND zopfli -c ${ENGINE_FILE} OUTPUT_FILE ${OUT}.gz
                 COMMAND_ERROR_IS_FATAL ANY)
 file(SIZE ${OUT}.gz packed)
 if(packed GREATER most)

@@ -1,5 +1,5 @@
 /* tests/formats/test_mgh.c - FreeSurfer's volumes: types, frames, places, and
- * what stands behind the voxels.  oracle_mgh.py compares with nibabel. */
+ * what stands behind the voxels.  oracle_nibabel.py compares with nibabel. */
 #include "support/files.h"
 
 #include <math.h>
