@@ -409,7 +409,7 @@ static void contradiction(file *f, int kind) {
         items(f, 0x7fe00010, "OB", 4, packed, size);
         return;
     }
-    element(f, 0x7fe00010, "OW", words, kind == 2 ? 24 : kind == 3 ? 32 : 16);
+    element(f, 0x7fe00010, "OW", words, kind == 2 || kind == 3 ? 32 : 16);
     if (kind == 1)
         element(f, 0x7fe00010, "OW", words, 16);
 }
@@ -417,7 +417,7 @@ static void contradiction(file *f, int kind) {
 static void headers_that_contradict_the_pixels_are_refused(void **state) {
     static const char *const parts[] = {"element (0028,0010) twice",
                                         "element (7fe0,0010) twice",
-                                        "has 24 bytes of pixels, more than",
+                                        "has 32 bytes of pixels, more than",
                                         "describes 3 frames but claims 2",
                                         "3 compressed pieces",
                                         "3 compressed pieces"};

@@ -516,7 +516,7 @@ oracle.says("YBR_FULL", "ybr.dcm", "channel 0 is the brightness")
 plain = rgb.PixelData
 write("ybr.dcm", packed(rgb, [b"\xff\xd8" + bytes(40)], JPEGBaseline8Bit))
 if GDCM:
-    oracle.refuse("ybr.dcm", "colours are YBR_FULL, compressed in transfer syntax")
+    oracle.refuse("ybr.dcm", "do not begin like those")
 write("ybr.dcm", run_lengths(rgb, [colour]))
 oracle.expect("ybr.dcm", colour[None, ..., 0], grid((0.5, 0.75, 9), (0, 0, 0)),
               name="brightness of YBR_FULL in run lengths")
@@ -524,8 +524,44 @@ rgb.file_meta.TransferSyntaxUID = ExplicitVRLittleEndian
 rgb.PixelData = plain
 rgb["PixelData"].is_undefined_length = False
 rgb.PhotometricInterpretation = "YBR_FULL_422"
+rgb.PlanarConfiguration = 0
+# Two pixels are Y, Y, Cb, Cr; some that say so have three values of each.
+pairs = colour[:, :4].reshape(6, 2, 6)[..., [0, 3, 1, 2]]
+spread = pairs[..., [0, 2, 3, 1, 2, 3]].reshape(6, 4, 3)
+rgb.Columns = 4
+for data, whole in ((pairs, spread), (colour[:, :4], colour[:, :4])):
+    rgb.PixelData = data.tobytes()
+    write("ybr.dcm", rgb)
+    for channel in range(3):
+        oracle.expect("ybr.dcm", whole[None, ..., channel],
+                      grid((0.5, 0.75, 9), (0, 0, 0)), ["--channel", channel],
+                      name=f"YBR_FULL_422 {data.size}")
+oracle.says("YBR_FULL_422", "ybr.dcm", "channel 0 is the brightness")
+rgb.PixelData = pairs.tobytes()[:-2]
 write("ybr.dcm", rgb)
-oracle.refuse("ybr.dcm", "colours are YBR_FULL_422 with 3 values")
+oracle.refuse("ybr.dcm", "have 46 bytes, not the 48")
+rows = image(oracle.sample("u2", (5, 6)), (0, 0, 0))
+want = rows.pixel_array
+rows.PixelData += bytes(12)
+write("rows.dcm", rows)
+oracle.expect("rows.dcm", want[None], grid((0.5, 0.75, 9), (0, 0, 0)),
+              name="a row more than the header says")
+oracle.says("a row more", "rows.dcm", "have 12 bytes more than its rows")
+
+# JPEG's own brightness and hue, as Pillow packs and unpacks them.
+if GDCM and Image:
+    smooth = np.linspace(0, 255, 16 * 16 * 3).reshape(16, 16, 3).astype("u1")
+    for halved, kind in ((0, "YBR_FULL"), (1, "YBR_FULL_422")):
+        stream = io.BytesIO()
+        Image.fromarray(smooth).save(stream, "JPEG", subsampling=halved)
+        photo = Image.open(stream)
+        photo.draft("YCbCr", photo.size)
+        rgb.Rows = rgb.Columns = 16
+        rgb.PhotometricInterpretation = kind
+        write("ybr.dcm", packed(rgb, [stream.getvalue()], JPEGBaseline8Bit))
+        oracle.expect("ybr.dcm", np.asarray(photo)[None, ..., 0],
+                      grid((0.5, 0.75, 9), (0, 0, 0)),
+                      name=f"brightness of {kind} in JPEG")
 
 
 def palette(first=0, count=256, bits=16, words=True, **tags):

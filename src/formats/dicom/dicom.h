@@ -65,6 +65,7 @@ typedef struct dicom_image {
     int64_t columns, rows, frames;
     int64_t slices; /* frames, or tiles of a mosaic */
     int64_t series_number;
+    uint64_t more; /* bytes of pixels that it does not speak of */
     int samples, allocated, stored, high;
     dicom_segments segments;
     unsigned whole;         /* the fraction that is all, of segments */
@@ -364,6 +365,10 @@ snow_status snow_dicom_check_mosaic(snow_context *context,
 void snow_dicom_place_tile(const dicom_image *image, dicom_frame *frame);
 
 /* --- sizes.c -------------------------------------------------------------- */
+
+/* Plain bytes behind the pixels that are whole rows, which no padding is. */
+uint64_t snow_dicom_count_more(const dicom_reader *reader,
+                               const dicom_image *image);
 
 /* Checks that the file of a reader without pixels can hold those of the image,
  * and has no more of them. Errors: SNOW_STATUS_BAD_INPUT. */

@@ -260,6 +260,7 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
     snow_dicom_text(reader, 0x00281054, image.rescale_type,
                     sizeof image.rescale_type);
     read_padding(reader, &image);
+    image.more = snow_dicom_count_more(reader, &image);
     SNOW_TRY(snow_dicom_check_sizes(context, reader, &image));
     SNOW_TRY(snow_dicom_read_mosaic(reader, &image));
     *out = image;

@@ -60,10 +60,29 @@ static snow_status read_bits(dicom_reader *reader, const dicom_image *image,
     return SNOW_STATUS_OK;
 }
 
+/* Two pixels of YBR_FULL_422 are Y, Y, Cb, Cr (PS3.3, C.7.6.3.1.2).  They stand
+ * at the front of what six bytes each will fill, so that the last go first. */
+static void spread_colours(unsigned char *out, uint64_t pairs) {
+    while (pairs--) {
+        unsigned char in[4];
+        memcpy(in, out + 4 * pairs, 4);
+        const unsigned char pixels[] = {in[0], in[2], in[3],
+                                        in[1], in[2], in[3]};
+        memcpy(out + 6 * pairs, pixels, sizeof pixels);
+    }
+}
+
 static snow_status read_plain(dicom_reader *reader, const dicom_image *image,
                               const dicom_element *pixels, int64_t number,
                               unsigned char *out) {
     uint64_t bytes = snow_dicom_frame_bytes(image);
+    /* Some that say so have all the samples nevertheless. */
+    const bool halved = !strcmp(image->photometric, "YBR_FULL_422") &&
+                        bytes * (uint64_t)image->frames > pixels->length;
+    if (halved && (image->samples != 3 || image->allocated != 8 || bytes % 2))
+        return fail_short(reader, image, pixels,
+                          bytes * (uint64_t)image->frames);
+    bytes = halved ? bytes / 3 * 2 : bytes;
     uint64_t first = (uint64_t)number * bytes;
     if (first + bytes > pixels->length ||
         snow_seekable_read(reader->store, pixels->at + first, out,
@@ -76,6 +95,8 @@ static snow_status read_plain(dicom_reader *reader, const dicom_image *image,
         snow_swap_bytes(out, bytes / 2, 2);
     else if (reader->big_endian != snow_machine_big_endian())
         snow_swap_bytes(out, bytes / size, size);
+    if (halved)
+        spread_colours(out, bytes / 4);
     return SNOW_STATUS_OK;
 }
 
@@ -249,12 +270,6 @@ static snow_status unpack(dicom_reader *reader, const dicom_image *image,
             "its pixels are compressed in an unsupported way (transfer syntax "
             "%.64s); decompress it, for example with gdcmconv --raw",
             reader->syntax);
-    if (strncmp(image->photometric, "YBR_FULL", 8) == 0)
-        return snow_fail(
-            reader->context, SNOW_STATUS_BAD_INPUT,
-            "its colours are %.16s, compressed in transfer syntax %.64s, which "
-            "is not supported; convert it to RGB, for example with gdcmconv",
-            image->photometric, reader->syntax);
     SNOW_TRY(snow_dicom_check_packed(reader->context, reader->syntax, image,
                                      &bytes, &size, &bits));
     SNOW_TRY(find_codec(reader->context, &codec));

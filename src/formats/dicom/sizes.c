@@ -35,17 +35,17 @@ static bool can_hold(const dicom_reader *reader, const dicom_image *image) {
            bytes <= most + ((uint64_t)1 << 31);
 }
 
-/* Returns whether plain pixels have whole rows more than the header says, which
- * is wrong then.  Other bytes fill them up, as older programs do (PS3.5,
- * 8.1.1). */
-static bool has_more(const dicom_reader *reader, const dicom_image *image) {
+uint64_t snow_dicom_count_more(const dicom_reader *reader,
+                               const dicom_image *image) {
     const uint64_t row = (uint64_t)image->columns * (uint64_t)image->samples *
                          (uint64_t)image->allocated / 8;
     uint64_t bytes = 0;
-    return !reader->packed && !strstr(image->photometric, "_42") &&
-           count_bytes(image, &bytes) &&
-           reader->pixel_bytes > bytes + (row > 1 ? row - 1 : 1) &&
-           (row <= 2 || (reader->pixel_bytes - bytes) % row <= 1);
+    if (reader->packed || strstr(image->photometric, "_42") ||
+        !count_bytes(image, &bytes) ||
+        reader->pixel_bytes <= bytes + (row > 1 ? row - 1 : 1) ||
+        (row > 2 && (reader->pixel_bytes - bytes) % row > 1))
+        return 0;
+    return reader->pixel_bytes - bytes;
 }
 
 /* Elements that lay out the pixels must not contradict one another. */
@@ -91,7 +91,8 @@ snow_status snow_dicom_check_sizes(snow_context *context,
                          image->frames == 1 ? "" : "s",
                          (long long)image->columns, (long long)image->rows,
                          (unsigned long long)snow_seekable_size(reader->store));
-    if (has_more(reader, image))
+    if (image->more >= snow_dicom_frame_bytes(image) ||
+        (image->more && image->allocated == 1))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "has %lu bytes of pixels, more than %lld frame%s of "
                          "%lldx%lld pixels; it is damaged",

@@ -444,11 +444,19 @@ static void warn_about_volume(snow_context *context, const dicom_stack *stack,
         snow_notify(context, "a rescale slope of 0 is not possible; 1 is used");
 }
 
+/* The two transforms of JPEG 2000 are undone with its compression. */
+static bool is_rgb(const dicom_image *image) {
+    return !strcmp(image->photometric, "RGB") ||
+           !strcmp(image->photometric, "YBR_RCT") ||
+           !strcmp(image->photometric, "YBR_ICT");
+}
+
 /* Colours are selected with --channel, except palette colours. */
 static snow_status check_colors(snow_context *context,
                                 const dicom_image *image) {
-    bool ybr = strcmp(image->photometric, "YBR_FULL") == 0;
-    if (image->samples != 1 && !ybr && strcmp(image->photometric, "RGB") != 0)
+    const bool ybr = !strcmp(image->photometric, "YBR_FULL") ||
+                     !strcmp(image->photometric, "YBR_FULL_422");
+    if (image->samples != 1 && !ybr && !is_rgb(image))
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
             "its colours are %.16s with %d values per pixel, which is not "
@@ -457,9 +465,14 @@ static snow_status check_colors(snow_context *context,
     if (image->samples == 1 && has_palette(image))
         snow_notify(context, "its values are palette colours; their brightness "
                              "is used, 0 to 255");
-    if (ybr && image->samples > 1)
+    if (image->more)
         snow_notify(context,
-                    "its colours are YBR_FULL; channel 0 is the brightness");
+                    "its pixels have %llu bytes more than its rows and "
+                    "columns; these are not used",
+                    (unsigned long long)image->more);
+    if (ybr && image->samples > 1)
+        snow_notify(context, "its colours are %s; channel 0 is the brightness",
+                    image->photometric);
     return SNOW_STATUS_OK;
 }
 
@@ -504,7 +517,7 @@ static snow_status describe_stack(const dicom_input *input,
     SNOW_TRY(warn_lost(context, stack));
     warn_about_volume(context, stack, snow_spacing_given(options));
     snow_channels_begin(info, image->samples, false);
-    if (image->samples == 3 && strcmp(image->photometric, "RGB") == 0)
+    if (image->samples == 3 && is_rgb(image))
         snow_channels_are_colors(info);
     SNOW_TRY(snow_volume_pick_channel(context, options, image->samples, info,
                                       &d->channel));
