@@ -49,6 +49,19 @@ for n, (version, order, (unit, form)) in enumerate(itertools.product(
     theirs(path)
     oracle.tells(path, window=[-3, 40 + n])
 
+# Complex numbers are vectors of two.
+for kind in ("c8", "c16"):
+    voxels = oracle.sample("f4", (5, 6, 7)) + 1j * oracle.sample("f4", (5, 6, 7))
+    nibabel.save(nibabel.Nifti1Image(voxels.astype(kind), np.diag([1, 2, 3, 1])),
+                 "complex.nii")
+    stored = np.asarray(nibabel.load("complex.nii").dataobj).T
+    for number, values in enumerate((stored.real, stored.imag)):
+        oracle.expect("complex.nii", values, np.diag([1, 2, 3, 1]),
+                      ["--component", number], name=f"{kind} {number}")
+    oracle.expect("complex.nii", np.abs(stored), np.diag([1, 2, 3, 1]),
+                  name=f"magnitude of {kind}")
+    oracle.says(kind, "complex.nii", "the magnitude of the 2 components is used")
+
 # --- headers that other programs leave ----------------------------------------
 
 nibabel.save(nibabel.Nifti1Image(oracle.sample("i2", (5, 6, 7)),

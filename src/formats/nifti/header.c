@@ -26,6 +26,10 @@ snow_type nifti_type(int datatype) {
     case 128:
     case 2304:
         return SNOW_TYPE_UINT8;
+    case 32:
+        return SNOW_TYPE_FLOAT32;
+    case 1792:
+        return SNOW_TYPE_FLOAT64;
 #define TO_TYPE(code, name) \
     case code:              \
         return SNOW_TYPE_##name;
@@ -36,8 +40,10 @@ snow_type nifti_type(int datatype) {
     }
 }
 
-/* RGB24 and RGBA32. */
+/* RGB24, RGBA32 and complex numbers. */
 int nifti_samples(int datatype) {
+    if (datatype == 32 || datatype == 1792)
+        return 2;
     return datatype == 128 ? 3 : datatype == 2304 ? 4 : 1;
 }
 
@@ -55,12 +61,8 @@ const char *nifti_type_name(int datatype) {
     switch (datatype) {
     case 1:
         return "single bits";
-    case 32:
-        return "complex numbers (2 x 32 bits)";
     case 1536:
         return "128-bit floats";
-    case 1792:
-        return "complex numbers (2 x 64 bits)";
     case 2048:
         return "complex numbers (2 x 128 bits)";
     default:
@@ -261,10 +263,11 @@ static snow_status check_type(snow_context *context,
                          "to one number each",
                          name);
     if (type == SNOW_TYPE_NONE)
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "data type %d is unknown; NIfTI's types are 2, 4, 8, "
-                         "16, 64, 128, 256, 512, 768, 1024, 1280 and 2304",
-                         header->datatype);
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "data type %d is unknown; NIfTI's types are 2, 4, 8, "
+            "16, 32, 64, 128, 256, 512, 768, 1024, 1280, 1792 and 2304",
+            header->datatype);
     const int bits =
         8 * nifti_samples(header->datatype) * (int)snow_type_size(type);
     if (header->bitpix && header->bitpix != bits)

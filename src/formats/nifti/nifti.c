@@ -56,21 +56,22 @@ static snow_status pick(const nifti_header *header, snow_context *context,
                         const snow_volume_options *options,
                         const int64_t sizes[6], snow_volume_info *info,
                         int64_t *channel) {
-    const bool colors = sizes[0] > 1;
-    if (!header->vectors || colors)
+    const bool colors = sizes[0] > 2, is_complex = sizes[0] == 2;
+    const bool vectors = is_complex || (header->vectors && !colors);
+    if (!vectors)
         snow_channels_begin(info, colors ? sizes[0] : sizes[5], false);
     if (colors || (header->colors && (sizes[5] == 3 || sizes[5] == 4)))
         snow_channels_are_colors(info);
-    if (colors && sizes[5] > 1)
+    if (sizes[0] > 1 && sizes[5] > 1)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "has %lld colours in each voxel (dim); one is "
-                         "supported",
-                         (long long)sizes[5]);
-    SNOW_TRY(header->vectors && !colors
-                 ? snow_volume_pick_component(context, options, sizes[5], info,
-                                              channel)
-                 : snow_volume_pick_channel(context, options, info->channels,
-                                            info, channel));
+                         "has %lld %s in each voxel (dim); one is supported",
+                         (long long)sizes[5],
+                         colors ? "colours" : "complex numbers");
+    SNOW_TRY(vectors ? snow_volume_pick_component(context, options,
+                                                  is_complex ? 2 : sizes[5],
+                                                  info, channel)
+                     : snow_volume_pick_channel(context, options,
+                                                info->channels, info, channel));
     return snow_volume_pick_time(context, "time step", options, info);
 }
 
