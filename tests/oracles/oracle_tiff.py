@@ -15,6 +15,15 @@ TYPES = ["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8", "f2"]
 tiffcp = shutil.which("tiffcp")
 
 
+# GDAL puts a mask and smaller copies behind an image.
+a = oracle.sample("u1")
+with tifffile.TiffWriter("mask.tif") as file:
+    for kind, page in ((0, a[0]), (4, a[0] > 9), (1, a[0, ::2, ::2]),
+                       (5, a[0, ::2, ::2] > 9)):
+        file.write(page, photometric="minisblack", subfiletype=kind,
+                   metadata=None)
+oracle.expect("mask.tif", a[:1], name="a mask of an image")
+
 for kind in TYPES:
     a = oracle.sample(kind)
     for order in "<>":

@@ -37,8 +37,9 @@ snow_status snow_tiff_list_pages(tiff_reader *reader, bool all,
     for (bool got = true; got;) {
         uint32_t kind = 0;
         TIFFGetFieldDefaulted(file->tiff, TIFFTAG_SUBFILETYPE, &kind);
-        /* Thumbnails of others are no slices. */
-        if (all || !reader->count || !(kind & FILETYPE_REDUCEDIMAGE)) {
+        /* Thumbnails of others and masks are no slices. */
+        if (all || !reader->count ||
+            !(kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK))) {
             if (page && reader->count && reader->count < most)
                 SNOW_TRY(snow_tiff_compare(file, page, reader->count));
             SNOW_TRY(SNOW_RESERVE(file->context, reader->pages, reader->count,
