@@ -301,6 +301,12 @@ for names, more, said in (
     oracle.expect("names", a[:5], name=f"{names} beside {more}")
     oracle.says(names, "names", said)
 
+# Pages that are to be turned stay, as in tifffile.
+tifffile.imwrite("turned.tif", a[0], photometric="minisblack",
+                 extratags=[(274, "H", 1, 6, True)])
+oracle.expect("turned.tif", a[:1], name="a page to be turned")
+oracle.says("a page to be turned", "turned.tif", "(Orientation 6)")
+
 # Pages that differ, files that are cut.
 with tifffile.TiffWriter("j.tif") as writer:
     writer.write(a[0])

@@ -110,6 +110,7 @@ snow_status snow_tiff_describe(snow_tiff *file, tiff_page *out) {
         return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
                          "its colours are stored as luminance and chrominance; "
                          "write it again as grey or RGB");
+    page.turn = short_field(tiff, TIFFTAG_ORIENTATION);
     page.white =
         colors == PHOTOMETRIC_MINISWHITE || is_falling(tiff, &page, colors);
     page.flip = flip_of(tiff, &page, colors);

@@ -23,12 +23,14 @@ snow_status snow_tiff_compare(snow_tiff *file, const tiff_page *page,
         own.bits == page->bits && own.coding == page->coding)
         return SNOW_STATUS_OK;
     return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
-                     "page %lld has %lldx%lld pixels of %s, but the first has "
-                     "%lldx%lld of %s; all slices of a volume must be alike",
+                     "page %lld has %lldx%lld pixels of %lld x %s (%d bits), "
+                     "but the first has %lldx%lld of %lld x %s (%d bits); all "
+                     "slices of a volume must be alike",
                      (long long)number, (long long)own.width,
-                     (long long)own.height, snow_type_name(own.type),
-                     (long long)page->width, (long long)page->height,
-                     snow_type_name(page->type));
+                     (long long)own.height, (long long)own.samples,
+                     snow_type_name(own.type), own.bits, (long long)page->width,
+                     (long long)page->height, (long long)page->samples,
+                     snow_type_name(page->type), page->bits);
 }
 
 snow_status snow_tiff_list_pages(tiff_reader *reader, bool all,

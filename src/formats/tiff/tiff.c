@@ -327,6 +327,11 @@ static void note_values(snow_context *context, const tiff_plan *plan) {
     else if (plan->page.white)
         snow_notify(context, "its 0 is white (MinIsWhite): values are kept, "
                              "and high ones are dark in slices");
+    if (plan->page.turn > 1)
+        snow_notify(context,
+                    "its pages are meant to be turned or mirrored (Orientation "
+                    "%d); rows and columns are kept as they are stored",
+                    plan->page.turn);
     if (!isnan(plan->shape.nodata))
         snow_notify(context,
                     "voxels of %.9g have no value, by its tag GDAL_NODATA",

@@ -97,6 +97,7 @@ typedef struct tiff_page {
     uint16_t bits, compression;
     bool is_signed;
     bool separate; /* samples are in planes, not interleaved */
+    uint16_t turn; /* its tag Orientation; 1: none */
     bool white;    /* 0 is white: */
     uint64_t flip; /* bits that are inverted therefore; 0: none */
 } tiff_page;
