@@ -29,7 +29,8 @@ void snow_full_range(const snow_histogram *histogram, double *low,
 }
 
 /* A window of a file without modality (cal_min and cal_max of NIfTI) is that of
- * a program rather than of a radiologist: it counts if it shows so many. */
+ * a program rather than of a radiologist: it counts if so many values lie in
+ * it, and fill so much of it.  In a wider one all would be one grey. */
 #define FEWEST 0.01
 
 snow_status snow_window_of(const snow_histogram *histogram,
@@ -44,7 +45,11 @@ snow_status snow_window_of(const snow_histogram *histogram,
     if (!*histogram->volume->info.modality)
         SNOW_TRY(
             snow_count_bins(histogram, window[0], window[1], 1, &inside, &all));
-    if ((double)inside < FEWEST * (double)all)
+    const double filled =
+        fmin(window[1], histogram->max) - fmax(window[0], histogram->min);
+    if (!*histogram->volume->info.modality &&
+        ((double)inside < FEWEST * (double)all ||
+         filled < FEWEST * (window[1] - window[0])))
         return SNOW_STATUS_OK;
     *is = true;
     *low = window[0];
