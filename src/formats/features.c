@@ -20,7 +20,7 @@ static const struct {
     {"blosc", SNOW_VERSION_BLOSC, "compressed Zarr", SNOW_HAVE_BLOSC, "blosc"},
     {"zstd", SNOW_VERSION_ZSTD, "compressed Zarr", SNOW_HAVE_ZSTD, NULL},
     {"lz4", SNOW_VERSION_LZ4, "compressed Zarr and VTI", SNOW_HAVE_LZ4, NULL},
-    {"libbz2", SNOW_VERSION_BZIP2, "NRRD packed by bzip2", SNOW_HAVE_BZIP2,
+    {"libbz2", SNOW_VERSION_BZIP2, "files packed by bzip2", SNOW_HAVE_BZIP2,
      NULL},
 };
 

@@ -7,6 +7,7 @@
 #include "formats/image_series.h"
 
 #include "formats/amr/amr.h"
+#include "formats/bytes/bzip2.h"
 #include "formats/components.h"
 #include "formats/masked.h"
 #include "formats/unsupported.h"
@@ -153,6 +154,10 @@ static snow_status read_source(snow_source *source,
     unsigned char bytes[SNOW_PEEK_BYTES];
     size_t size;
     SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &size));
+    if (snow_looks_bzip2(bytes, size)) { /* gzip is undone already */
+        SNOW_TRY(snow_source_unpack_bzip2(source));
+        SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &size));
+    }
     if (!size)
         return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
                          "is empty; get or write the file again");

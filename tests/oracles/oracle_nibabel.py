@@ -1,5 +1,6 @@
 """NIfTI and the volumes of FreeSurfer, as nibabel writes and reads them: types,
 scales, matrices, windows."""
+import bz2
 import gzip
 import itertools
 import struct
@@ -87,6 +88,8 @@ once = gzip.compress(oracle.got("plain.nii"))
 halves = [gzip.compress(half) for half in (oracle.got("plain.nii")[:200],
                                            oracle.got("plain.nii")[200:])]
 theirs(oracle.put("members.nii.gz", b"".join(halves)))
+theirs(oracle.put("plain.nii.bz2", packed := bz2.compress(oracle.got("plain.nii"))))
+oracle.refuse(oracle.put("cut.nii.bz2", packed[:-9]), "truncated")
 oracle.refuse(oracle.put("twice.nii.gz", gzip.compress(once)),
               "is compressed with gzip twice")
 
