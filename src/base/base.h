@@ -155,6 +155,10 @@ static inline void snow_lap(double *mark, double *total) {
 bool snow_parse_int64(const char *text, int64_t *out);
 bool snow_parse_double(const char *text, double *out);
 
+/* Bytes of the letter of UTF-8 that a text begins with, 0: of none; and whether
+ * it is a control character, which a terminal must not see. */
+size_t snow_letter_bytes(const char *text, bool *control);
+
 /* True if `text` ends with `suffix`, ignoring case. */
 bool snow_has_suffix(const char *text, const char *suffix);
 

@@ -16,8 +16,6 @@
 #define WORD_BYTES 100
 #define VALUE_BYTES 1000
 
-#ifndef __EMSCRIPTEN__
-
 /* Bytes of the letter of UTF-8 that a text begins with (RFC 3629), and its
  * number; 0: none, or not all of it. */
 static size_t letter_bytes(const unsigned char *text, uint32_t *letter) {
@@ -48,13 +46,22 @@ static bool is_control(uint32_t letter) {
            (letter >= 0x2066 && letter <= 0x2069) || letter == 0xfeff;
 }
 
+size_t snow_letter_bytes(const char *text, bool *control) {
+    uint32_t letter;
+    const size_t bytes = letter_bytes((const unsigned char *)text, &letter);
+    *control = is_control(letter);
+    return bytes;
+}
+
+#ifndef __EMSCRIPTEN__
+
 /* Escapes as `ls --escape` writes them: \n and \t, else three octal digits. */
 static void escape(const char *text, char *out, size_t capacity) {
     size_t used = 0;
     for (const unsigned char *at = (const unsigned char *)text; *at;) {
-        uint32_t letter;
-        const size_t bytes = letter_bytes(at, &letter);
-        if (bytes && !is_control(letter)) {
+        bool control;
+        const size_t bytes = snow_letter_bytes((const char *)at, &control);
+        if (bytes && !control) {
             if (used + bytes >= capacity)
                 break;
             memcpy(out + used, at, bytes);

@@ -52,41 +52,17 @@ static snow_status refuse_magnitude(snow_context *context, int64_t count) {
                      (long long)count);
 }
 
-/* Bytes of the letter that a text begins with, in UTF-8; 0: of none. */
-static size_t letter_bytes(const unsigned char *text) {
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-    const size_t count = *text < 0x80   ? 1
-                         : *text < 0xe0 ? 2
-                         : *text < 0xf0 ? 3
-                                        : 4;
-    uint32_t code = *text & (0xffu >> (count + 1));
-    if (count == 1)
-        return 1;
-    if (*text < 0xc2 || *text > 0xf4)
-        return 0;
-    for (size_t n = 1; n < count; n++) {
-        if ((text[n] & 0xc0) != 0x80)
-            return 0;
-        code = code << 6 | (text[n] & 0x3fu);
-    }
-    return code >= least[count] && code <= 0x10ffff &&
-                   (code & ~0x7ffu) != 0xd800
-               ? count
-               : 0;
-}
-
 void snow_copy_name(const char *text, char *out, size_t size) {
-    size_t used = 0;
-    while (*text) {
-        const size_t count = letter_bytes((const unsigned char *)text);
-        if (used + (count ? count : 1) >= size)
+    size_t used = 0, count;
+    for (; *text; text += count) {
+        bool control;
+        count = snow_letter_bytes(text, &control);
+        const bool good = count && !control;
+        count = count ? count : 1;
+        if (used + (good ? count : 1) >= size)
             break;
-        if (count)
-            memcpy(out + used, text, count);
-        else
-            out[used] = '?';
-        used += count ? count : 1;
-        text += count ? count : 1;
+        memcpy(out + used, good ? text : "?", good ? count : 1);
+        used += good ? count : 1;
     }
     out[used] = 0;
 }

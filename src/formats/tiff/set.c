@@ -249,22 +249,32 @@ static snow_status read_text(tiff_set *set, const char *text,
     return read_text(set, text, number);
 }
 
-/* Texts that are no UTF-8 have letters of Latin-1. */
+static bool is_utf8(const char *text) {
+    size_t count = 1;
+    bool control;
+    for (; *text && count; text += count)
+        count = snow_letter_bytes(text, &control);
+    return count > 0;
+}
+
+/* Texts that are no UTF-8 have letters of Latin-1.  Control characters, which
+ * XML has none of, become "?". */
 static snow_status read_letters(tiff_set *set, const char *text,
                                 const char *wanted) {
-    const size_t size = strlen(text);
-    char *clean = snow_allocate(set->context, 2 * size + 1), *at = clean;
+    const bool wide = !is_utf8(text);
+    char *clean = snow_allocate(set->context, 2 * strlen(text) + 1);
+    char *at = clean;
     if (!clean)
         return SNOW_STATUS_NO_MEMORY;
-    snow_copy_name(text, clean, size + 1);
-    if (strcmp(clean, text) != 0) {
-        for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
-            if (*c >= 0x80)
-                *at++ = (char)(0xc0 | *c >> 6);
-            *at++ = (char)(*c >= 0x80 ? 0x80 | (*c & 0x3f) : *c);
-        }
-        *at = 0;
+    for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
+        const bool latin = wide && *c >= 0x80;
+        if (latin)
+            *at++ = (char)(0xc0 | *c >> 6);
+        *at++ = (char)(latin                               ? 0x80 | (*c & 0x3f)
+                       : *c < ' ' && !strchr("\t\n\r", *c) ? '?'
+                                                           : *c);
     }
+    *at = 0;
     snow_status status = read_text(set, clean, wanted);
     snow_release(set->context, clean);
     return status;
