@@ -64,7 +64,7 @@ static PyObject *text(PyObject *module, PyObject *message) {
     return given ? message_text(given) : NULL;
 }
 
-/* A unit of length in picometres, 0 if it is none, and its usual name. */
+/* A unit of length in picometres, 0 if it is not known, and its usual name. */
 static PyObject *length_unit(PyObject *self, PyObject *unit) {
     (void)self;
     char name[16] = "";

@@ -378,7 +378,7 @@ def _computed(source: Any) -> Any:
 
 
 def _refuse_others(source: Any, kind: str) -> None:
-    """What has arrays, or resembles one, and is none."""
+    """Refuses what holds arrays, or resembles one."""
     group = source if hasattr(type(source), "keys") or \
         not hasattr(type(source), "variables") \
         else source.variables

@@ -58,7 +58,7 @@ void snow_cf_attributes_begin(cf_attributes *out);
 void snow_cf_take(const char *name, const cf_attribute *given,
                   cf_attributes *out);
 
-/* A number that is none of 64 bits. */
+/* A number whose 64 bits are not known. */
 cf_number snow_cf_number(double value);
 
 /* The conversion of stored values to data: scale * stored + offset, except for
@@ -66,7 +66,7 @@ cf_number snow_cf_number(double value);
 typedef struct cf_values {
     snow_type type; /* of stored values, by _Unsigned */
     double scale, offset;
-    cf_number fill[CF_MOST_NUMBERS + 2];
+    cf_number fill[2 * CF_MOST_NUMBERS]; /* of two attributes */
     int fills;
     cf_number least, most; /* valid values, if they are limited */
     bool limited;

@@ -24,8 +24,8 @@ typedef struct stack {
     bool cropped;                /* slices are read in part */
 } stack;
 
-/* The format whose names the file has, if files of it are slices; what says of
- * others what they are is none. */
+/* The format of the file's name, if its files are slices; a companion, which
+ * describes other files, is not. */
 static const snow_format *slice_format(const stack *s, const char *path) {
     const snow_format *format = s->find(path);
     return format && format->slices && !snow_has_suffix(path, SNOW_COMPANION)

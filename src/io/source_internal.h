@@ -13,7 +13,7 @@ struct snow_source {
     int depth;              /* of files that led here by name */
     snow_open_named_fn *opener;
     bool siblings; /* other files can be opened by name */
-    bool moved;    /* one of them was not where the name says, which was told */
+    bool moved;    /* one of them was not where the name says, as a note says */
 };
 
 #endif

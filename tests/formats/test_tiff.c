@@ -11,7 +11,7 @@
 typedef struct tiff {
     unsigned char bytes[4096];
     size_t size;
-    size_t link;      /* where the next page's place is told */
+    size_t link;      /* where the next page's place stands */
     const char *text; /* the next page's description, or NULL */
 } tiff;
 

@@ -5,6 +5,7 @@
 #include "support/files.h"
 
 #include <dirent.h>
+#include <math.h>
 
 typedef struct records {
     unsigned char bytes[1 << 16];
@@ -130,6 +131,31 @@ static void chunks_are_found_where_they_lie(void **state) {
         assert_non_null(strstr(files->warnings, rows[n].note));
         snow_volume_close(volume);
     }
+}
+
+/* CF 2.5.1: a value is missing if it equals _FillValue or any number of
+ * missing_value; both lists are as long as lists may be. */
+static void long_lists_of_missing_values_all_count(void **state) {
+    static records r;
+    char text[1024], *at = text;
+    const unsigned char values[8] = {0, 63, 64, 127, 128, 7, 255, 200};
+    at += sprintf(at, "{\"_FillValue\": [");
+    for (int i = 0; i < 128; i++)
+        at += sprintf(at, "%d%s", i,
+                      i == 63    ? "], \"missing_value\": ["
+                      : i == 127 ? "]}"
+                                 : ", ");
+    describe(&r, "[2, 2, 2]", "[2, 2, 2]", PLAIN);
+    add_text(&r, ".zattrs", text);
+    add_bytes(&r, "0.0.0", values, sizeof values);
+    snow_volume *volume;
+    assert_int_equal(open_records(*state, &r, "", NULL, &volume),
+                     SNOW_STATUS_OK);
+    const float *voxels = snow_volume_voxels(volume);
+    for (int i = 0; i < 8; i++)
+        assert_true(values[i] < 128 ? isnan(voxels[i])
+                                    : voxels[i] == values[i]);
+    snow_volume_close(volume);
 }
 
 /* The volume, and a chunk. */
@@ -267,6 +293,7 @@ int main(void) {
         SUPPORT_TEST(only_the_chunks_of_a_box_are_read),
         SUPPORT_TEST(chunks_that_are_missing_are_filled_and_told),
         SUPPORT_TEST(chunks_are_found_where_they_lie),
+        SUPPORT_TEST(long_lists_of_missing_values_all_count),
         SUPPORT_TEST(memory_is_that_of_the_volume_and_a_chunk),
         SUPPORT_TEST(sizes_that_lie_take_no_memory),
         SUPPORT_TEST(paths_do_not_climb),

@@ -204,7 +204,7 @@ if path:
                       oracle.affine((2, 1, 2), (1, -79.5, 0)),
                       ["--time", time], unit="degrees")
     oracle.refuse(path, "the file has 24", ["--time", 24], 2)
-# MINC is told by its variables, not by a version that old files lack.
+# MINC is recognised by its variables, not by a version that old files lack.
 for beside, attributes in (("image-max", {}), ("rootvariable", {}),
                            ("w", {"varid": "MINC standard variable"})):
     write("m.mnc", "NETCDF3_CLASSIC", {"zspace": 4, "yspace": 5, "xspace": 6},

@@ -10,7 +10,7 @@
  *   204  origin (8 bytes each)
  *   244  815: MIRTK has written it       252  a number that marks the format
  *
- * The origin is the first voxel in LPS, as ITK has it; of MIRTK, which tells
+ * The origin is the first voxel in LPS, as ITK has it; where MIRTK wrote
  * directions too, it is the centre of the volume in RAS. */
 #include "formats/bytes/number.h"
 #include "formats/format.h"

@@ -36,7 +36,7 @@ static double read_number(const hdf5_file *file, hid_t object, const char *name,
     return snow_parse_double(text, &value) ? value : NAN;
 }
 
-/* Opens the group of the channel; -1: the data set is none of Imaris. */
+/* Opens the group of the channel; -1: the data set is not of Imaris. */
 static hid_t open_channel(const hdf5_file *file, const hdf5_set *set) {
     char path[HDF5_NAME_BYTES];
     memcpy(path, set->path, sizeof path);

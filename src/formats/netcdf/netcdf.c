@@ -165,7 +165,7 @@ static const netcdf_variable *coordinates_of(const netcdf_header *header,
     return found;
 }
 
-/* Coordinates that are truncated are none. */
+/* Truncated coordinates are left out. */
 static snow_status read_axis(const netcdf_header *header, snow_seekable *bytes,
                              int64_t dimension, cf_axis *out) {
     int64_t count = header->dimensions[dimension].size;
