@@ -129,8 +129,13 @@ typedef struct image_object {
     PyObject *transfer;
     snow_volume_info info;
     snow_view view;
-    bool opaque; /* a slice, which fills its picture */
 } image_object;
+
+/* Leaves a strip of a view whose size is known to (legend, unit or None, (low,
+ * high) or NaN, bars or None), or without a legend to a scale bar; false with
+ * an exception. */
+bool image_leave_strip(const transfer_object *t, PyObject *marks,
+                       snow_view *view);
 
 typedef struct volume_object {
     PyObject_HEAD context_object *context;

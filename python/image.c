@@ -76,8 +76,10 @@ static snow_status add_bars(const transfer_object *t, const annotations *a,
     snow_status status = SNOW_STATUS_OK;
     if (!a->bars)
         return snow_overlay_color_bar(overlay, t->transfer, a->unit,
-                                      isnan(a->range[0]) ? NULL : a->range);
-    for (Py_ssize_t n = 0; n < PyTuple_Size(a->bars) && !status; n++) {
+                                      isnan(a->range[0]) ? NULL : a->range, 0,
+                                      1);
+    const int count = (int)PyTuple_Size(a->bars);
+    for (int n = 0; n < count && !status; n++) {
         PyObject *transfer;
         const char *name;
         double range[2];
@@ -85,11 +87,35 @@ static snow_status add_bars(const transfer_object *t, const annotations *a,
                               transfer_type, &transfer, &name, &range[0],
                               &range[1]))
             return SNOW_STATUS_BAD_USAGE;
-        status = snow_overlay_color_bar(overlay,
-                                        ((transfer_object *)transfer)->transfer,
-                                        name, isnan(range[0]) ? NULL : range);
+        status = snow_overlay_color_bar(
+            overlay, ((transfer_object *)transfer)->transfer, name,
+            isnan(range[0]) ? NULL : range, n, count);
     }
     return status;
+}
+
+/* What is said of the bars is said when they are drawn. */
+bool image_leave_strip(const transfer_object *t, PyObject *marks,
+                       snow_view *view) {
+    annotations a = {.range = {NAN, NAN}};
+    snow_context *silent = NULL;
+    snow_overlay *overlay = NULL;
+    if (!PyArg_ParseTuple(marks, "pz(dd)O", &a.legend, &a.unit, &a.range[0],
+                          &a.range[1], &a.bars))
+        return false;
+    a.bars = a.bars == Py_None ? NULL : a.bars;
+    snow_status status = snow_context_new(NULL, &silent);
+    if (!status)
+        status = snow_overlay_new(silent, view->width, view->height, &overlay);
+    if (!status && a.legend)
+        status = add_bars(t, &a, overlay);
+    if (!status && (a.legend || !(view->fov > 0)))
+        view->strip = snow_overlay_strip(overlay);
+    if (status && !PyErr_Occurred())
+        context_set_error(status, snow_context_message(silent));
+    snow_overlay_free(overlay);
+    snow_context_free(silent);
+    return !status;
 }
 
 /* In the order of the command line: what comes first takes its place. */
@@ -97,15 +123,14 @@ static snow_status annotate(const image_object *o, const annotations *a,
                             snow_overlay *overlay) {
     const transfer_object *t = (const transfer_object *)o->transfer;
     snow_status status = SNOW_STATUS_OK;
-    snow_overlay_keep_off(overlay, o->opaque ? NULL : o->image);
     if (t && a->legend)
         status = add_bars(t, a, overlay);
     if (t && (a->legend || a->scale_bar) && !status)
         status = snow_overlay_scale_bar(overlay, &o->info, &o->view);
-    if (a->title && !status)
-        status = snow_overlay_title(overlay, a->title);
     if (t && a->letters && !status)
         status = snow_overlay_orientation(overlay, &o->info, &o->view);
+    if (a->title && !status)
+        status = snow_overlay_title(overlay, a->title);
     return status;
 }
 

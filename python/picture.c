@@ -227,12 +227,12 @@ static bool read_layers(PyObject *given, request *r) {
 }
 
 /* render(Image, transfer, view, view's fields, settings, fit, azimuths or None,
- * progress, layers, whether they are mixed) -> (image, depth or None, the
- * view's target or None, zoom, stats) */
+ * progress, layers, whether they are mixed, share, marks of a legend or None)
+ * -> (image, depth or None, the view's target or None, zoom, stats) */
 PyObject *volume_render(PyObject *self, PyObject *args) {
     volume_object *o = (volume_object *)self;
     PyObject *type, *transfer, *view, *settings, *azimuths, *progress, *layers;
-    PyObject *stats = NULL;
+    PyObject *stats = NULL, *marks;
     const char *name;
     double *turns;
     request r = {.volume = o};
@@ -240,10 +240,10 @@ PyObject *volume_render(PyObject *self, PyObject *args) {
     snow_status status = SNOW_STATUS_OK;
     int fit, mixed;
     snow_settings_init(&r.settings);
-    if (!PyArg_ParseTuple(args, "OO!zOOpOOO!pd", &type, transfer_type,
+    if (!PyArg_ParseTuple(args, "OO!zOOpOOO!pdO", &type, transfer_type,
                           &transfer, &name, &view, &settings, &fit, &azimuths,
                           &progress, &PyTuple_Type, &layers, &mixed,
-                          &r.shares[0]) ||
+                          &r.shares[0], &marks) ||
         !record_fill_settings(settings, &r.settings) ||
         !read_azimuths(azimuths, &turns, &r.azimuth_count))
         return NULL;
@@ -259,7 +259,8 @@ PyObject *volume_render(PyObject *self, PyObject *args) {
     }
     info = *snow_volume_get_info(o->volume);
     const bool viewed =
-        read_layers(layers, &r) && make_view(o, name, view, &r.view);
+        read_layers(layers, &r) && make_view(o, name, view, &r.view) &&
+        (marks == Py_None || image_leave_strip(r.transfer, marks, &r.view));
     if (viewed)
         CALL(o->context, status, draw(&r));
     PyMem_Free(turns);
@@ -295,19 +296,33 @@ PyObject *volume_slice_axis(PyObject *self, PyObject *name) {
     return Py_BuildValue("(ii)", axis, world);
 }
 
-static snow_status draw_slice(request *r, const char *axis, int64_t index) {
+/* The view of a slice, beside which a strip is left to a legend; false with an
+ * exception, or a status. */
+static bool see_slice(request *r, const char *axis, PyObject *marks,
+                      snow_status *status) {
+    const snow_volume *volume = r->volume->volume;
+    const snow_volume_info *info = snow_volume_get_info(volume);
+    snow_context *context = r->volume->context->context;
+    snow_view view = r->view;
     int found;
-    snow_status status = snow_slice_view(
-        r->volume->context->context, snow_volume_get_info(r->volume->volume),
-        axis, &r->view, &found);
-    return status == SNOW_STATUS_OK ? draw_apart(r, r->mixed, index) : status;
+    *status = snow_slice_view(context, info, axis, &view, &found);
+    if (marks != Py_None && !*status) {
+        if (!image_leave_strip(r->transfer, marks, &view))
+            return false;
+        r->view.strip = view.strip;
+        view = r->view;
+        *status = snow_slice_view(context, info, axis, &view, &found);
+    }
+    r->view = view;
+    return !*status;
 }
 
 /* slice(Image, axis, index, transfer or None for values, width, height,
- * settings, layers, whether they are mixed) */
+ * settings, layers, whether they are mixed, share, marks of a legend or None)
+ */
 PyObject *volume_slice(PyObject *self, PyObject *args) {
     volume_object *o = (volume_object *)self;
-    PyObject *type, *transfer, *settings, *layers;
+    PyObject *type, *transfer, *settings, *layers, *marks;
     const char *axis;
     long long index;
     int width, height, mixed;
@@ -315,9 +330,9 @@ PyObject *volume_slice(PyObject *self, PyObject *args) {
     snow_status status = SNOW_STATUS_OK;
     snow_settings_init(&r.settings);
     snow_view_init(&r.view);
-    if (!PyArg_ParseTuple(args, "OsLOiiOO!pd", &type, &axis, &index, &transfer,
+    if (!PyArg_ParseTuple(args, "OsLOiiOO!pdO", &type, &axis, &index, &transfer,
                           &width, &height, &settings, &PyTuple_Type, &layers,
-                          &mixed, &r.shares[0]) ||
+                          &mixed, &r.shares[0], &marks) ||
         !record_fill_settings(settings, &r.settings))
         return NULL;
     if (PyObject_TypeCheck(transfer, transfer_type))
@@ -328,12 +343,10 @@ PyObject *volume_slice(PyObject *self, PyObject *args) {
     if (!volume_use(o, Py_None))
         return NULL;
     snow_volume_info info = *snow_volume_get_info(o->volume);
-    if (read_layers(layers, &r))
-        CALL(o->context, status, draw_slice(&r, axis, index));
+    if (read_layers(layers, &r) && see_slice(&r, axis, marks, &status))
+        CALL(o->context, status, draw_apart(&r, r.mixed, index));
     const bool fine = context_leave(o->context, status);
     PyObject *image = finish_image(type, &r, &info);
-    if (image)
-        ((image_object *)image)->opaque = true;
     if (!fine)
         Py_CLEAR(image);
     return image;

@@ -229,9 +229,10 @@ void answer_look(drawing *d, outbox *box) {
     answer_put(
         box, 0, MESSAGE_LOOK,
         json_pack(
-            "{s:s, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b, s:o, s:o, s:o}", "t",
-            "look", "low", low, "high", high, "count",
-            (json_int_t)look.opacity_count, "opacity",
+            "{s:s, s:f, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b, s:o, s:o, "
+            "s:o}",
+            "t", "look", "legend", d->state.strip, "low", low, "high", high,
+            "count", (json_int_t)look.opacity_count, "opacity",
             points_of(look.opacities, look.opacity_count), "gradient",
             points_of(look.gradient_opacities, look.gradient_opacity_count),
             "strip", strip_of(transfer, low, high), "text",

@@ -2,9 +2,9 @@
 #
 #   cmake -D FOLDER=web -D GZIP=gzip -D OUT=web_files.c -P embed.cmake
 #
-# In all at most 25,000 bytes.
+# In all at most 60,000 bytes.
 cmake_minimum_required(VERSION 3.19)
-set(most 25000)
+set(most 60000)
 
 include(${CMAKE_CURRENT_LIST_DIR}/modules.cmake)
 

@@ -50,8 +50,8 @@ export function pixel(recipe, info, side) {
     return 2 * wide / ((recipe.zoom ?? 1) * side);
 }
 
-/** Where a place of the world is seen, in pixels from the middle of the picture;
- * null behind the eye. */
+/** Where a place of the world is seen, in pixels from the target; null behind the
+ * eye. */
 export function project(recipe, info, place, side) {
     const {right, up, back} = axes(recipe, info), from = add(place, recipe.target ?? info.middle, -1);
     const far = distance(recipe, info), left = far < Infinity ? 1 - dot(from, back) / far : 1;

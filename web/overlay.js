@@ -25,7 +25,7 @@ export class Overlay {
         return [this.canvas, ...this.handles];
     }
 
-    /** From the middle of the picture, in pixels of the screen. */
+    /** From the place of the target, in pixels of the screen. */
     see(place) {
         return project(this.recipe.keys, this.page.info, place, this.pointer.side);
     }
@@ -46,7 +46,7 @@ export class Overlay {
         canvas.hidden = !(this.slices.keys && page.info.slices); // empty, it costs as much
         if (!canvas.hidden) {
             const {g} = surface(canvas);
-            g.translate(width / 2, height / 2);
+            g.translate(width / 2 - this.pointer.shift, height / 2);
             [0, 1, 2].forEach(k => this.outline(g, k));
         }
         this.place(width, height);
@@ -93,7 +93,7 @@ export class Overlay {
             button.hidden = !seen;
             if (!seen)
                 return;
-            const [x, y] = [seen[0] + width / 2, seen[1] + height / 2];
+            const [x, y] = [seen[0] + width / 2 - this.pointer.shift, seen[1] + height / 2];
             button.style.left = `${Math.max(12, Math.min(width - 12, x))}px`;
             button.style.top = `${Math.max(12, Math.min(height - 12, y))}px`;
             button.style.background = COLORS[grip.axis];

@@ -36,7 +36,7 @@ export class Pointer {
 
     doubled(event) {
         const [x, y] = this.at(event), [width, height] = this.box;
-        this.aim(x / width + 0.5, y / height + 0.5);
+        this.aim((x - this.shift) / width + 0.5, y / height + 0.5);
     }
 
     /** The box in which the picture is drawn: another page may have another window. */
@@ -46,14 +46,21 @@ export class Pointer {
         return [width * scale, height * scale];
     }
 
+    /** The shorter side of what is not left to a legend. */
     get side() {
-        return Math.min(...this.box);
+        const [width, height] = this.box;
+        return Math.min(width - 2 * this.shift, height);
     }
 
-    /** From the middle of the picture. */
+    /** How far the target is left of the middle, beside a legend. */
+    get shift() {
+        return this.box[0] * (this.page.look?.legend ?? 0) / 2;
+    }
+
+    /** From the place of the target. */
     at(event) {
         const box = this.canvas.getBoundingClientRect();
-        return [event.clientX - box.left - box.width / 2,
+        return [event.clientX - box.left - box.width / 2 + this.shift,
             event.clientY - box.top - box.height / 2];
     }
 

@@ -261,7 +261,8 @@ engine.on('depth', ({x, y, depth}) => {
         return;
     }
     const [width, height] = pointer.box, {keys} = recipe;
-    const place = unproject(keys, page.info, (x - 0.5) * width, (y - 0.5) * height, depth, pointer.side)
+    const place = unproject(keys, page.info, (x - 0.5) * width + pointer.shift,
+        (y - 0.5) * height, depth, pointer.side)
         .map(value => +value.toPrecision(6));
     const changes = aimed(keys, page.info, place);
     recipe.set(keys.slices ? {...changes, slices: {...keys.slices, at: place}} : changes);

@@ -12,9 +12,8 @@ SNOW_API snow_status snow_overlay_new(
     snow_context *context, int width, int height, snow_overlay **out);
 SNOW_API void snow_overlay_free(snow_overlay *overlay);
 
-/* Letters and bars keep off those before them, always, and where there is room
- * off alpha above 1/2 of this picture (NULL: none), which must live as long. */
-SNOW_API void snow_overlay_keep_off(snow_overlay *, const snow_image *);
+/* The picture below, which hides edges of the box; it must live as long. */
+SNOW_API void snow_overlay_set_picture(snow_overlay *, const snow_image *);
 
 /* Pixels of a capital letter that suits pictures of its size. */
 SNOW_API double snow_overlay_text_height(const snow_overlay *overlay);
@@ -30,16 +29,20 @@ SNOW_API snow_status snow_view_orientation(snow_context *context,
 SNOW_API snow_status snow_overlay_orientation(
     snow_overlay *overlay, const snow_volume_info *info, const snow_view *view);
 
-/* Lower right, sides of at least 128 pixels: the colours with ticks, and
+/* At the right, sides of at least 128 pixels: the colours with ticks, and
  * opacity as a line. `unit` may be NULL. `range`, of pictures without opacity:
- * values of the first and the last colour; else NULL. */
+ * values of the first and the last colour; else NULL. It is bar `n` of `count`,
+ * from 0, the lowest first. */
 SNOW_API snow_status snow_overlay_color_bar(snow_overlay *overlay,
-    const snow_transfer *transfer, const char *unit, const double range[2]);
-/* Lower left, sides of at least 128 pixels, not in perspective: a length. */
+    const snow_transfer *transfer, const char *unit, const double range[2],
+    int n, int count);
+/* The `strip` of a view whose picture leaves room for the bars so far. */
+SNOW_API double snow_overlay_strip(const snow_overlay *overlay);
+/* A length, lower right, sides of at least 128 pixels, not in perspective. */
 SNOW_API snow_status snow_overlay_scale_bar(
     snow_overlay *overlay, const snow_volume_info *info, const snow_view *view);
-/* Edges of the volume's box, those behind it only where the picture that is
- * kept off is clear; `axes`: with ticks. Sides of at least 128 pixels. */
+/* Edges of the volume's box, those behind it only where the picture below is
+ * clear; `axes`: with ticks. Sides of at least 128 pixels. */
 SNOW_API snow_status snow_overlay_box(snow_overlay *overlay,
     const snow_volume_info *info, const snow_view *view, bool axes);
 /* A volume's time: "12 h", the date of a unit "hours since 1990-01-01", or by a

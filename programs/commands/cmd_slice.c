@@ -224,10 +224,25 @@ static snow_status draw(slice_work *w) {
     const snow_volume_info *info = snow_volume_get_info(w->volume);
     int axis;
     double begin = seconds_now();
-    w->view.width = (int)w->opts.size[0];
-    w->view.height = (int)w->opts.size[1];
-    snow_status status =
-        snow_slice_view(w->context, info, axes[w->axis], &w->view, &axis);
+    snow_status status = SNOW_STATUS_OK;
+    w->view.strip = 0;
+    for (int n = 0; n < 2 && status == SNOW_STATUS_OK; n++) {
+        if (n) /* a strip of the picture, whose size is known now */
+            w->view.strip = annotations_strip(
+                &(picture_annotations){&w->opts,
+                                       *info,
+                                       w->view,
+                                       w->transfer,
+                                       {0, 0},
+                                       &w->channels,
+                                       layers_legend(&w->layers, false)});
+        w->view.width = (int)w->opts.size[0];
+        w->view.height = (int)w->opts.size[1];
+        status =
+            snow_slice_view(w->context, info, axes[w->axis], &w->view, &axis);
+        if (!w->transfer)
+            break;
+    }
     if (status == SNOW_STATUS_OK)
         status = snow_slice_render(w->volume, 0, w->transfer, &w->view,
                                    &w->settings, &w->image);

@@ -15,8 +15,8 @@
 
 #define TITLE_BYTES 256
 
-/* Bars of channels that there are places for: in the corners. */
-#define BARS_MOST 4
+/* Pictures of sums leave room for numbers of such a magnitude. */
+#define UNKNOWN 10000
 
 /* Whether an output can show annotations: a picture of 8 or 16 bits, or a
  * movie. */
@@ -90,30 +90,27 @@ static void name_channel(const snow_volume_info *info, const channel_pick *pick,
         snprintf(out, 64, "channel %" PRId64, pick->index);
 }
 
-/* A bar for each, the first one on top; those without a place come last. */
+/* A bar for each, the first one on top of `bars`. */
 static snow_status add_channels(const picture_annotations *annotations,
-                                snow_overlay *overlay) {
+                                int bars, snow_overlay *overlay) {
     const channel_set *c = annotations->channels;
     const bool over = strcmp(annotations->opts->mode, "over") == 0;
     snow_status status = SNOW_STATUS_OK;
-    const int count = c->list.count;
-    const int stacked = count < BARS_MOST ? count : BARS_MOST;
-    for (int i = 0; i < count && status == SNOW_STATUS_OK; i++) {
-        const int n = i < stacked ? stacked - 1 - i : i;
+    for (int n = 0; n < c->list.count && status == SNOW_STATUS_OK; n++) {
         const snow_transfer *look = n ? c->looks[n] : annotations->transfer;
         double range[2];
         char name[64];
         name_channel(&annotations->info, &c->list.picks[n], name);
         snow_transfer_domain(look, &range[0], &range[1]);
-        status =
-            snow_overlay_color_bar(overlay, look, name, over ? NULL : range);
+        status = snow_overlay_color_bar(
+            overlay, look, name, over ? NULL : range, bars - 1 - n, bars);
     }
     return status;
 }
 
 /* Projections show values by colour alone: the colours of the look, or those
  * that the values were painted with. */
-static snow_status add_colors(const picture_annotations *annotations,
+static snow_status add_colors(const picture_annotations *annotations, int bars,
                               snow_overlay *overlay) {
     const options *opts = annotations->opts;
     double range[2] = {annotations->range[0], annotations->range[1]};
@@ -125,12 +122,11 @@ static snow_status add_colors(const picture_annotations *annotations,
     char caption[TITLE_BYTES];
     make_caption(annotations, caption);
     return snow_overlay_color_bar(overlay, annotations->transfer, caption,
-                                  over ? NULL : range);
+                                  over ? NULL : range, bars - 1, bars);
 }
 
-/* The labels of an overlay have the place of the volume's bar, which its values
- * leave there; beside bars of channels they have another.  A bar of values is
- * called by its file. */
+/* The labels of an overlay stand instead of the volume's bar, or below bars of
+ * channels; so does the bar of its values, which is called by its file. */
 static snow_status add_legend(const picture_annotations *annotations,
                               snow_overlay *overlay) {
     const options *opts = annotations->opts;
@@ -144,16 +140,18 @@ static snow_status add_legend(const picture_annotations *annotations,
     double range[2];
     if (labels && !mixed) {
         make_caption(annotations, name);
-        return snow_overlay_color_bar(overlay, over, name, NULL);
+        return snow_overlay_color_bar(overlay, over, name, NULL, 0, 1);
     }
-    snow_status status = mixed ? add_channels(annotations, overlay)
-                               : add_colors(annotations, overlay);
+    const int bars =
+        (mixed ? annotations->channels->list.count : 1) + (over != NULL);
+    snow_status status = mixed ? add_channels(annotations, bars, overlay)
+                               : add_colors(annotations, bars, overlay);
     if (status != SNOW_STATUS_OK || !over)
         return status;
     default_stem(opts->overlay, name);
     snow_transfer_domain(over, &range[0], &range[1]);
     return snow_overlay_color_bar(overlay, over, name,
-                                  slice && !labels ? range : NULL);
+                                  slice && !labels ? range : NULL, 0, bars);
 }
 
 /* The time of the picture, or the number of its step; "" where there is
@@ -184,8 +182,7 @@ static snow_status add_title(const picture_annotations *annotations,
     return snow_overlay_title(overlay, text);
 }
 
-/* The letters have the most places to go to.  The box has one, and what comes
- * before does not keep off it. */
+/* The title keeps off the letters, and the numbers of the box off all. */
 static snow_status add_annotations(const picture_annotations *annotations,
                                    const snow_view *view, int64_t step,
                                    snow_overlay *overlay) {
@@ -196,13 +193,42 @@ static snow_status add_annotations(const picture_annotations *annotations,
     if (status == SNOW_STATUS_OK && opts->legend.scale)
         status = snow_overlay_scale_bar(overlay, &annotations->info, view);
     if (status == SNOW_STATUS_OK)
+        status =
+            opts->no_labels
+                ? status
+                : snow_overlay_orientation(overlay, &annotations->info, view);
+    if (status == SNOW_STATUS_OK)
         status = add_title(annotations, step, overlay);
-    if (status == SNOW_STATUS_OK && !opts->no_labels)
-        status = snow_overlay_orientation(overlay, &annotations->info, view);
     if (status == SNOW_STATUS_OK && opts->box)
         status = snow_overlay_box(overlay, &annotations->info, view,
                                   options_has_axes(opts));
     return status;
+}
+
+double annotations_strip(const picture_annotations *given) {
+    picture_annotations all = *given;
+    const picture_annotations *annotations = &all;
+    const options *opts = given->opts;
+    if (strcmp(opts->mode, "mean") == 0 ||
+        strcmp(opts->mode, "sum") == 0) { /* which are not known yet */
+        all.range[0] = -UNKNOWN;
+        all.range[1] = UNKNOWN;
+    }
+    snow_context *silent = NULL;
+    snow_overlay *overlay = NULL;
+    double strip = 0;
+    const bool any = opts->legend.bar || (opts->legend.scale && !opts->fov);
+    const int sides[2] = {annotations->view.width, annotations->view.height};
+    if (!any || snow_context_new(NULL, &silent) != SNOW_STATUS_OK)
+        return 0;
+    if (snow_overlay_new(silent, sides[0], sides[1], &overlay) ==
+            SNOW_STATUS_OK &&
+        (!opts->legend.bar ||
+         add_legend(annotations, overlay) == SNOW_STATUS_OK))
+        strip = snow_overlay_strip(overlay);
+    snow_overlay_free(overlay);
+    snow_context_free(silent);
+    return strip;
 }
 
 snow_status annotations_make(const picture_annotations *annotations,
@@ -228,7 +254,7 @@ snow_status annotations_make(const picture_annotations *annotations,
     snow_status status =
         snow_overlay_new(context, view.width, view.height, &overlay);
     if (status == SNOW_STATUS_OK) {
-        snow_overlay_keep_off(overlay, image);
+        snow_overlay_set_picture(overlay, image);
         status = add_annotations(annotations, &view, step, overlay);
     }
     if (status == SNOW_STATUS_OK)

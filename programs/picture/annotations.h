@@ -23,10 +23,12 @@ typedef struct picture_annotations {
  * CONTINUE or an exit code. */
 int annotations_check(const options *opts);
 
+/* The share of the width that the view is to leave to the legend. */
+double annotations_strip(const picture_annotations *annotations);
+
 /* Makes the overlay for a picture from an azimuth; NULL if nothing is drawn.
- * `step` is a time step, or -1; letters keep off what the image shows (NULL:
- * they stay at the edges), which must outlive the overlay.  Error messages go
- * to the context. */
+ * `step` is a time step, or -1; the image, which may be NULL and must outlive
+ * the overlay, hides edges of the box.  Error messages go to the context. */
 snow_status annotations_make(const picture_annotations *annotations,
                              double azimuth, int64_t step,
                              const snow_image *image, snow_context *context,

@@ -85,9 +85,25 @@ double render_state_margin(const options *opts) {
                 OUTLINE_ZOOM - LINE_ZOOM * lines);
 }
 
+void render_state_leave_strip(render_state *s) {
+    s->strip = annotations_strip(
+        &(picture_annotations){s->opts,
+                               s->whole,
+                               s->view,
+                               s->transfer,
+                               {0, 0},
+                               &s->channels,
+                               layers_legend(&s->layers, s->each_time)});
+    s->view.strip = s->strip;
+}
+
 /* Frames what the look shows, once for all pictures, from each side of a turn.
  * What later steps show is not known: their grid is framed. */
 static snow_status frame_view(render_state *s) {
+    annotations_find_unit(s->opts, s->volume, process_ranks() > 1, &s->whole);
+    if (!s->drawn.path && !s->framed)
+        render_state_leave_strip(s);
+    s->view.strip = s->strip;
     if (strcmp(s->opts->fit, "visible") != 0)
         return SNOW_STATUS_OK;
     if (!s->framed) {
@@ -413,9 +429,5 @@ int render_state_open(render_state *s, const char *path, int64_t time) {
     snow_volume_close(s->volume);
     s->volume = NULL;
     channels_close_volumes(&s->channels);
-    int done = process_ranks() > 1 ? open_part(s, &step) : open_alone(s, &step);
-    if (done == CONTINUE)
-        annotations_find_unit(s->opts, s->volume, process_ranks() > 1,
-                              &s->whole);
-    return done;
+    return process_ranks() > 1 ? open_part(s, &step) : open_alone(s, &step);
 }

@@ -46,6 +46,7 @@ typedef struct render_state {
     snow_frame *frame;
     uint64_t frames_dropped;  /* freed; where it rises, the frame is another */
     snow_view view, frame_of; /* the latter: as framed */
+    double strip;             /* of all pictures: what the first one needs */
     snow_settings settings;
     render_times
         times; /* seconds for reading and look; sums over all volumes */
@@ -81,6 +82,9 @@ int render_state_open(render_state *s, const char *path, int64_t time);
 /* If a look was chosen automatically for a volume without surfaces, it is not
  * shaded, unless shading is requested, or a surface. */
 void render_state_choose_shade(render_state *s);
+
+/* Leaves a strip of the picture to the legend. */
+void render_state_leave_strip(render_state *s);
 
 /* What the zoom of a framed box is multiplied by, so that its edges and the
  * numbers of its axes are in the picture, clear of the lines of a title; 1

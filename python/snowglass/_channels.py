@@ -205,7 +205,7 @@ class Mixture:
         rows = list(zip(self.transfers, self.names))
         return tuple((transfer, name, *(none if mode == "over" else
                                         transfer.domain))
-                     for transfer, name in [*rows[3::-1], *rows[4:]])
+                     for transfer, name in rows[::-1])
 
     def describe(self) -> str:
         rows = []

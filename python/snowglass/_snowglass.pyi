@@ -50,7 +50,8 @@ class Volume:
                 fit: bool, azimuths: Optional[Sequence[float]],
                 progress: Progress,
                 layers: tuple[tuple["Volume", Transfer, bool, float], ...],
-                mixed: bool, share: float) -> tuple[
+                mixed: bool, share: float,
+                marks: Optional[tuple[Any, ...]]) -> tuple[
                     I, Optional[I], Optional[tuple[float, float, float]],
                     float, Mapping[str, Any]]: ...
     def _views(self) -> dict[str, tuple[tuple[float, float, float],
@@ -60,7 +61,8 @@ class Volume:
                transfer: Optional[Transfer], width: int, height: int,
                settings: Mapping[str, Any],
                layers: tuple[tuple["Volume", Transfer, bool, float], ...],
-               mixed: bool, share: float) -> I: ...
+               mixed: bool, share: float,
+               marks: Optional[tuple[Any, ...]]) -> I: ...
 
 def open(type: Type[V], path: bytes, fields: Mapping[str, Any], clip: Any,
          memory: int, progress: Progress, like: Optional[Volume] = ...) -> V: ...

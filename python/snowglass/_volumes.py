@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import operator
 import os
 import re
@@ -432,31 +433,36 @@ class Volume(_snowglass.Volume):
         layers = mixture.layers() if mixture else ()
         if layer is not None:
             layers += ((layer.volume, layer.transfer, False, 1.0),)
+        annotations = self._annotations(mode, letters, legend, mixture)
         image, depth, target, zoom, stats = first._render(
             Image, transfer, view, fields, settings, fit == "visible", azimuths,
             progress_of(progress), layers, mixture is not None,
-            mixture.shares[0] if mixture else 1.0)
+            mixture.shares[0] if mixture else 1.0,
+            _marks_of(annotations, mode, transfer))
         image.stats, image.depth, image._view = stats, depth, (target, zoom)
         if azimuths is None and not isinstance(
                 look, (_snowglass.Transfer, _channels.Mixture)):
             image._made = (self._source, self._info["unit"],
                            look_of(look), asked)
-        self._annotate(image, mode, transfer, look, {
-            "letters": letters, "legend": legend}, mixture)
+        self._annotate(image, mode, transfer, look, annotations)
         return image
 
-    def _annotate(self, image: Image, mode: str, transfer: Any, look: Any,
-                  annotations: dict[str, Any],
-                  mixture: Optional[_channels.Mixture]) -> None:
-        """Notes what a saved picture will show, as the command line has it."""
-        legend = annotations["legend"]
-        annotations["unit"], annotations["scale_bar"] = None, legend == "scale"
-        annotations["legend"] = bool(legend) and legend != "scale"
+    def _annotations(self, mode: str, letters: bool, legend: Union[bool, str],
+                     mixture: Optional[_channels.Mixture]) -> dict[str, Any]:
+        """What a saved picture will show, as the command line has it."""
+        annotations: dict[str, Any] = {
+            "letters": letters, "unit": None, "scale_bar": legend == "scale",
+            "legend": bool(legend) and legend != "scale"}
         if annotations["legend"]:
             annotations["unit"] = self._caption(
                 legend if isinstance(legend, str) else "")
         if mixture:
             annotations["bars"] = mixture.bars(mode)
+        return annotations
+
+    @staticmethod
+    def _annotate(image: Image, mode: str, transfer: Any, look: Any,
+                  annotations: dict[str, Any]) -> None:
         image._annotations = annotations
         image._values = mode in ("mean", "sum")
         image._domain = None if mode == "over" else transfer.domain
@@ -550,8 +556,10 @@ class Volume(_snowglass.Volume):
                 self else self._slice_alone(along, index, each))
         transfer = mixture.transfers[0] if mixture else \
             alone._slice_transfer(look)
+        annotations = alone._annotations("slice", letters, legend, mixture)
         image = alone._draw_slice(along, 0, transfer, size,
-                                  {"kernel": kernel, "threads": threads}, mixture)
+                                  {"kernel": kernel, "threads": threads}, mixture,
+                                  _marks_of(annotations, "slice", transfer))
         image.stats = {"axis": axis, "index": index, "position": position}
         if not isinstance(look, _snowglass.Transfer):
             image._made = (self._source, self._info["unit"], look_of(look), {
@@ -560,8 +568,7 @@ class Volume(_snowglass.Volume):
                 None if size is None else _sides(size), "kernel": kernel,
                 "legend": legend, "letters": letters,
                 "threads": threads})
-        alone._annotate(image, "slice", transfer, look, {
-            "letters": letters, "legend": legend}, mixture)
+        alone._annotate(image, "slice", transfer, look, annotations)
         return image
 
     def slice_values(self, axis: Union[str, int] = "axial",
@@ -589,13 +596,14 @@ class Volume(_snowglass.Volume):
     def _draw_slice(self, along: int, index: int, transfer: Any,
                     size: Union[int, Sequence[int], None],
                     settings: Mapping[str, Any],
-                    mixture: Optional[_channels.Mixture] = None) -> Image:
+                    mixture: Optional[_channels.Mixture] = None,
+                    marks: Optional[tuple[Any, ...]] = None) -> Image:
         width, height = _sides(0 if size is None else size)
         first = mixture.volumes[0] if mixture else self
         return first._slice(Image, "xyz"[along], index, transfer, width, height,
                             settings, mixture.layers() if mixture else (),
                             mixture is not None,
-                            mixture.shares[0] if mixture else 1.0)
+                            mixture.shares[0] if mixture else 1.0, marks)
 
     def _slice_alone(self, along: int, index: int,
                      channel: Optional[_snowglass.Volume] = None) -> "Volume":
@@ -717,6 +725,19 @@ def _check_render(settings: Mapping[str, Any], view: Any, legend: Any) -> None:
             for name in (*_recipes.DATA, *_arrays.OPTIONS, "memory")})
     _checks.text("view", view, VIEW)
     _check_legend(legend)
+
+
+def _marks_of(annotations: Mapping[str, Any], mode: str, transfer: Any
+              ) -> Optional[tuple[Any, ...]]:
+    """Of the annotations what needs a strip of the picture, for the core."""
+    if not annotations["legend"] and not annotations["scale_bar"]:
+        return None
+    none = (math.nan, math.nan)
+    # Sums are not known yet: room for numbers of such a magnitude.
+    range = (-1e4, 1e4) if mode in ("mean", "sum") else \
+        none if mode == "over" else transfer.domain or none
+    return (annotations["legend"], annotations["unit"], range,
+            annotations.get("bars"))
 
 
 def _check_legend(legend: Any) -> None:

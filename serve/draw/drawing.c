@@ -218,6 +218,9 @@ static int place(drawing *d) {
         return done;
     annotations_find_unit(&d->opts, s->volume, false, &s->whole);
     render_state_choose_shade(s);
+    const double strip = s->strip;
+    render_state_leave_strip(s);
+    d->look_is_new |= fabs(s->strip - strip) > 0;
     if (strcmp(d->opts.fit, "visible") != 0)
         return CONTINUE;
     return check_status(s->context,
@@ -364,6 +367,7 @@ json_t *drawing_fit(drawing *d) {
     for (int i = 0; i < TURN_SIDES; i++)
         azimuths[i] = view.azimuth + 180.0 * i / TURN_SIDES;
     view.zoom = 1;
+    view.strip = s->strip;
     view.has_target = false;
     if (snow_view_fit(comm_of_all(), s->volume, seen, &s->settings, azimuths,
                       TURN_SIDES, &view) != SNOW_STATUS_OK)

@@ -50,8 +50,8 @@ static void project(const box_view *b, const double at[3], double pixel[2]) {
     point_of(b, at, p);
     if (b->camera.distance > 0)
         scale *= b->camera.distance / (b->camera.distance - p[2]);
-    pixel[0] = 0.5 * b->overlay->width + scale * p[0];
-    pixel[1] = 0.5 * b->overlay->height - scale * p[1];
+    pixel[0] = b->camera.target[0] + scale * p[0];
+    pixel[1] = b->camera.target[1] - scale * p[1];
 }
 
 static void find_faces(box_view *b) {
@@ -155,8 +155,8 @@ static void name_axis(const box_view *b, int axis, box_axis *out) {
         out->from[end] =
             first + step * (end ? (double)info->dims[axis] - 0.5 : -0.5);
     snprintf(out->name, sizeof out->name, "%c%s%s%s",
-             world < 0 ? "ijk"[axis] : "xyz"[world], *info -> unit ? " (" : "",
-             info->unit, *info->unit ? ")" : "");
+             world < 0 ? "ijk"[axis] : "xyz"[world],
+             info -> unit[0] ? " (" : "", info->unit, *info->unit ? ")" : "");
 }
 
 /* The edge of the outline that is farthest down and to the left. */
@@ -188,20 +188,6 @@ static bool find_axis(const box_view *b, int axis, box_axis *out) {
     return best > -INFINITY;
 }
 
-/* Takes the last shape away if it would lie upon others than the box. */
-static void keep_off_others(const box_view *b) {
-    snow_overlay *overlay = b->overlay;
-    const double *own = overlay->shapes[overlay->shape_count - 1].box;
-    for (size_t n = 0; n < b->others; n++) {
-        const double *other = overlay->shapes[n].box;
-        if (own[0] < other[2] && other[0] < own[2] && own[1] < other[3] &&
-            other[1] < own[3]) {
-            overlay->shape_count--;
-            return;
-        }
-    }
-}
-
 /* How far to move what reaches from `low` to `high` so that it begins in the
  * picture, and ends there if it is not longer. */
 static double move_inside(double low, double high, double size) {
@@ -229,7 +215,9 @@ static snow_status write_beside(const box_view *b, const double point[2],
         SNOW_TRY(snow_overlay_text(overlay, x + by[0], y + by[1], share[0],
                                    share[1], b->height, text));
     }
-    keep_off_others(b);
+    /* It does not lie upon others than the box. */
+    if (snow_overlay_meets(overlay, overlay->shape_count - 1, b->others))
+        overlay->shape_count--;
     return SNOW_STATUS_OK;
 }
 

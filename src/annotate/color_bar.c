@@ -8,6 +8,13 @@
 #include <snowglass/overlay.h>
 
 #include <stdio.h>
+#include <string.h>
+
+/* Of the width, that a name takes at most. */
+#define NAME_MOST 0.4
+
+/* Heights of letters that a bar is high, at least. */
+#define BAR_LEAST 2
 
 /* The most ticks: of a short scale by decades. */
 #define TICKS 64
@@ -21,6 +28,33 @@ typedef struct color_bar {
     double opaque;    /* largest opacity in the bar */
     double height;    /* height of the letters */
 } color_bar;
+
+/* --- the strip ------------------------------------------------------------ */
+
+/* Widens the strip for a line that ends at a pixel. */
+static void widen_strip(snow_overlay *overlay, double right, double height,
+                        const char *text) {
+    const double left = right - height * snow_font_width(text);
+    overlay->strip = fmax(overlay->strip,
+                          overlay->width - left + SNOW_STRIP_MARGIN * height);
+}
+
+/* The upper and the lower end of the place of bar n of some, from the lowest
+ * on. */
+static void find_slot(const snow_overlay *overlay, int n, int count,
+                      double slot[2]) {
+    const double height = snow_number_height(overlay);
+    const double low = overlay->height - SNOW_STRIP_BELOW * height;
+    const double each = (low - height) / fmax(count, 2);
+    slot[1] = low - n * each;
+    slot[0] = slot[1] - each;
+}
+
+/* The right end of lines in the strip. */
+static int right_of(const snow_overlay *overlay) {
+    return overlay->width -
+           (int)(SNOW_STRIP_MARGIN * snow_number_height(overlay) + 0.5);
+}
 
 /* From the first to the last control point; a single value gets a small
  * range. */
@@ -147,7 +181,7 @@ static void add_tick(const color_bar *bar, double value, bool number,
                      bar_ticks *ticks) {
     for (int n = 0; n < ticks->number_count && number; n++)
         number = fabs(place_of(bar, value) - place_of(bar, ticks->numbers[n])) >
-                 1.2 * bar->height;
+                 1.4 * bar->height;
     int *count = number ? &ticks->number_count : &ticks->stroke_count;
     const bool within =
         value >= bar->low * (1 - 1e-9 * copysign(1, bar->low)) &&
@@ -233,9 +267,10 @@ static snow_status draw_ticks(snow_overlay *overlay, const color_bar *bar) {
         double digits = shown != 0 ? ceil(log10(fabs(shown) / step) + 1.5) : 6;
         snow_text_print(text, sizeof text, "%.*g",
                         (int)fmin(fmax(digits, 6), 15), shown);
-        SNOW_TRY(snow_overlay_text(overlay, bar->x0 - 0.9 * bar->height,
-                                   place_of(bar, value), 1, 0.5, bar->height,
-                                   text));
+        const double right = bar->x0 - 0.8 * bar->height;
+        widen_strip(overlay, right, bar->height, text);
+        SNOW_TRY(snow_overlay_text(overlay, right, place_of(bar, value), 1, 0.5,
+                                   bar->height, text));
     }
     return SNOW_STATUS_OK;
 }
@@ -245,7 +280,7 @@ static snow_status draw_ticks(snow_overlay *overlay, const color_bar *bar) {
 /* A square of a colour, and the name left of it. */
 static snow_status draw_label(snow_overlay *overlay, const snow_label *label,
                               double height, double y) {
-    const int right = overlay->width - (int)height;
+    const int right = right_of(overlay);
     const int left = right - (int)(1.2 * height), top = (int)y;
     const int rows = (int)(1.2 * height);
     float colors[3 * 4096];
@@ -253,55 +288,93 @@ static snow_status draw_label(snow_overlay *overlay, const snow_label *label,
     snprintf(text, sizeof text, "%s", label->name);
     if (!*text)
         snow_text_print(text, sizeof text, "%.9g", label->value);
-    snow_font_shorten((left - 1.4 * height) / height, text);
+    snow_font_shorten(NAME_MOST * overlay->width / height - 3, text);
     for (int n = 0; n < 3 * rows; n++)
         colors[n] = (float)label->color[n % 3];
+    widen_strip(overlay, left - 0.6 * height, height, text);
     SNOW_TRY(snow_overlay_rows(overlay, left, top, right, top + rows, colors));
     return snow_overlay_text(overlay, left - 0.6 * height, y + rows / 2.0, 1,
                              0.5, height, text);
 }
 
-/* Those that are seen, of which the lower half has room for some. */
-static snow_status draw_labels(snow_overlay *overlay, const snow_transfer *t) {
+/* Those that are seen, from the lower end of their place on up, as far as it
+ * has room. */
+static snow_status draw_labels(snow_overlay *overlay, const snow_transfer *t,
+                               const double slot[2]) {
     const double height = snow_number_height(overlay), step = 1.7 * height;
-    size_t seen = 0, capacity = (size_t)(overlay->height / 2.0 / step),
-           drawn = 0;
-    size_t first = overlay->shape_count;
+    size_t seen = 0, capacity = (size_t)((slot[1] - slot[0]) / step), drawn = 0;
     for (size_t n = 0; n < t->label_count; n++)
         seen += t->labels[n].color[3] > 0;
     size_t rows = seen < capacity ? seen : capacity;
-    double y = overlay->height - 1.2 * height - step * (double)rows;
+    if (seen && !rows)
+        snow_notify(overlay->context,
+                    "the picture has no room for the names of the labels");
+    double y = slot[1] - step * (double)rows;
     for (size_t n = 0; n < t->label_count && drawn < rows; n++) {
         if (!(t->labels[n].color[3] > 0))
             continue;
-        if (++drawn == rows && rows < seen) {
-            SNOW_TRY(snow_overlay_text(overlay, overlay->width - height, y, 1,
-                                       0, height, "..."));
-            break;
-        }
+        if (++drawn == rows && rows < seen)
+            return snow_overlay_text(overlay, right_of(overlay), y, 1, 0,
+                                     height, "...");
         SNOW_TRY(draw_label(overlay, &t->labels[n], height, y));
         y += step;
     }
-    snow_overlay_settle_mirrored(overlay, first, false);
-    if (rows && overlay->shape_count == first)
-        snow_notify(overlay->context,
-                    "the picture has no room for the names of the labels");
     return SNOW_STATUS_OK;
+}
+
+/* --- the bar -------------------------------------------------------------- */
+
+/* Writes a caption in lines that are no wider than the strip, where words
+ * allow, and returns the lower end of the last one. */
+static snow_status draw_caption(snow_overlay *overlay, const char *caption,
+                                double height, double *y) {
+    const double edge = SNOW_STRIP_MARGIN * height;
+    const double room = fmax(overlay->strip, SNOW_STRIP_LEAST * overlay->width);
+    const int right = right_of(overlay);
+    char line[256];
+    for (const char *at = caption; *at; at += strspn(at, " ")) {
+        size_t length = strcspn(at, " ");
+        for (size_t next = length; at[next];) {
+            next += strspn(at + next, " ");
+            next += strcspn(at + next, " ");
+            snprintf(line, sizeof line, "%.*s", (int)next, at);
+            if (height * snow_font_width(line) > room - 2 * edge)
+                break;
+            length = next;
+        }
+        snprintf(line, sizeof line, "%.*s", (int)length, at);
+        snow_font_shorten(NAME_MOST * overlay->width / height - 1.2, line);
+        widen_strip(overlay, right, height, line);
+        SNOW_TRY(snow_overlay_text(overlay, right, *y, 1, 0, height, line));
+        *y += 1.5 * height;
+        at += length;
+    }
+    return SNOW_STATUS_OK;
+}
+
+static snow_status draw_bar(snow_overlay *overlay, const snow_transfer *t,
+                            bool opacity, color_bar *bar) {
+    SNOW_TRY(draw_colors(overlay, t, bar));
+    if (opacity)
+        SNOW_TRY(draw_opacity(overlay, t, bar));
+    return draw_ticks(overlay, bar);
 }
 
 snow_status snow_overlay_color_bar(snow_overlay *overlay,
                                    const snow_transfer *transfer,
-                                   const char *unit, const double range[2]) {
-    double height = snow_number_height(overlay);
+                                   const char *unit, const double range[2],
+                                   int n, int count) {
+    double height = snow_number_height(overlay), slot[2];
     if (snow_shorter_side(overlay) < SNOW_BAR_SIDE_LEAST)
         return SNOW_STATUS_OK;
-    if (transfer->labels && !range)
-        return draw_labels(overlay, transfer);
+    find_slot(overlay, n, count, slot);
+    if (transfer->labels && !range) {
+        slot[0] = count > 1 ? slot[0] : height;
+        return draw_labels(overlay, transfer, slot);
+    }
     color_bar bar = {.height = height};
-    bar.x1 = overlay->width - (int)height;
-    bar.x0 = bar.x1 - (int)(1.4 * height);
-    bar.y1 = overlay->height - (int)(1.2 * height);
-    bar.y0 = overlay->height / 2 + (int)(2.8 * height);
+    bar.x1 = right_of(overlay);
+    bar.x0 = bar.x1 - (int)(1.2 * height);
     span_values(transfer, &bar);
     bar.from = bar.low;
     bar.to = bar.high;
@@ -312,20 +385,16 @@ snow_status snow_overlay_color_bar(snow_overlay *overlay,
     }
     if (!transfer->log || bar.low > 0)
         bar.scale = (snow_scale){transfer->log, transfer->linear};
-    size_t first = overlay->shape_count;
-    SNOW_TRY(draw_colors(overlay, transfer, &bar));
-    if (!range)
-        SNOW_TRY(draw_opacity(overlay, transfer, &bar));
-    SNOW_TRY(draw_ticks(overlay, &bar));
-    char caption[256];
-    snprintf(caption, sizeof caption, "%s", unit ? unit : "");
-    snow_font_shorten(bar.x1 / height - 1, caption);
-    SNOW_TRY(snow_overlay_text(overlay, bar.x1, bar.y0 - 0.8 * height, 1, 1,
-                               height, caption));
-    snow_overlay_settle_mirrored(overlay, first, false);
-    if (overlay->shape_count == first)
-        snow_notify(overlay->context,
-                    "the picture has no room for the colour bar%s%s",
-                    *caption ? " of " : "", caption);
+    const size_t first = overlay->shape_count;
+    double y = slot[0];
+    SNOW_TRY(draw_caption(overlay, unit ? unit : "", height, &y));
+    bar.y0 = (int)(y + height);
+    bar.y1 = (int)(slot[1] - height);
+    if (bar.y1 - bar.y0 >= BAR_LEAST * height)
+        return draw_bar(overlay, transfer, !range, &bar);
+    overlay->shape_count = first;
+    snow_notify(overlay->context,
+                "the picture has no room for the colour bar%s%s",
+                unit && *unit ? " of " : "", unit ? unit : "");
     return SNOW_STATUS_OK;
 }

@@ -33,11 +33,13 @@ snow_status snow_overlay_text(snow_overlay *overlay, double x, double y,
                           text);
 }
 
-/* Adds lines, of which those that are wider end with "...". */
-static snow_status add_lines(snow_overlay *overlay, double width,
+/* Adds lines from `y` on, in heights of letters; those that are wider than the
+ * picture end with "...". */
+static snow_status add_lines(snow_overlay *overlay, double y,
                              const char *text) {
-    double height = snow_overlay_text_height(overlay);
-    for (double y = 0.8; *text; y += 1.7) {
+    const double height = snow_overlay_text_height(overlay);
+    const double width = overlay->width - overlay->strip;
+    for (; *text; y += 1.7) {
         char line[256];
         size_t length = strcspn(text, "\n");
         snprintf(line, sizeof line, "%.*s", (int)fmin((double)length, 255),
@@ -50,15 +52,16 @@ static snow_status add_lines(snow_overlay *overlay, double width,
     return SNOW_STATUS_OK;
 }
 
-/* Where a whole line has no room beside what is there, less of it may have. */
+/* Below the letter of the upper edge, where it would cover that. */
 snow_status snow_overlay_title(snow_overlay *overlay, const char *text) {
-    static const double shares[] = {1, 0.6, 0.4};
+    static const double places[] = {0.8, 2.4};
     const size_t first = overlay->shape_count;
     if (snow_shorter_side(overlay) < NOTE_SIDE_LEAST || !*text)
         return SNOW_STATUS_OK;
-    for (int n = 0; n < 3 && overlay->shape_count == first; n++) {
-        SNOW_TRY(add_lines(overlay, shares[n] * overlay->width, text));
-        snow_overlay_settle_mirrored(overlay, first, true);
+    for (int n = 0; n < 2 && overlay->shape_count == first; n++) {
+        SNOW_TRY(add_lines(overlay, places[n], text));
+        if (snow_overlay_meets(overlay, first, first))
+            overlay->shape_count = first;
     }
     if (overlay->shape_count == first)
         snow_notify(overlay->context, "the picture has no room for the title");
@@ -76,6 +79,8 @@ static void write_length(double length, const char *unit, char *out,
                          size_t size) {
     static const char *const units[] = {"nm", "\xc2\xb5m", "mm", "m"};
     int at = strcmp(unit, "um") == 0 ? 1 : -1;
+    if (strcmp(unit, "angstrom") == 0)
+        unit = "\xc3\x85";
     for (int i = 0; i < 4; i++)
         if (strcmp(unit, units[i]) == 0)
             at = i;
@@ -100,23 +105,34 @@ snow_status snow_overlay_scale_bar(snow_overlay *overlay,
     SNOW_TRY(snow_camera_make(context, &volume, &from, &camera));
     if (camera.distance > 0 || snow_shorter_side(overlay) < SNOW_BAR_SIDE_LEAST)
         return SNOW_STATUS_OK;
-    double height = snow_number_height(overlay);
-    double length = snow_round_below(0.3 * overlay->width * camera.pitch);
-    double left = floor(height) + 0.5, right = left + length / camera.pitch;
-    double y = floor(overlay->height - 1.2 * height) + 0.5,
-           tick = 0.35 * height;
-    size_t first = overlay->shape_count;
-    write_length(length, volume.unit, text, sizeof text);
+    /* As wide as the strip allows, in its middle. */
+    const double height = snow_number_height(overlay);
+    const double edge = SNOW_STRIP_MARGIN * height;
+    const double strip =
+        overlay->width * fmax(view->strip, snow_overlay_strip(overlay));
+    const double length =
+        snow_round_below((strip - 2 * edge) * camera.pitch) / camera.pitch;
+    double left = floor(overlay->width - (strip + length) / 2) + 0.5;
+    overlay->strip = fmax(overlay->strip, strip);
+    double right = left + length, tick = 0.35 * height;
+    double y = floor(overlay->height - 1.2 * height) + 0.5;
+    write_length(length * camera.pitch, volume.unit, text, sizeof text);
     SNOW_TRY(snow_begin_strokes(overlay, height));
     SNOW_TRY(snow_overlay_stroke(overlay, left, y, right, y));
     SNOW_TRY(snow_overlay_stroke(overlay, left, y - tick, left, y + tick));
     SNOW_TRY(snow_overlay_stroke(overlay, right, y - tick, right, y + tick));
     /* Above the middle, but within the picture. */
-    double half = height * snow_font_width(text) / 2;
-    SNOW_TRY(snow_overlay_text(overlay, fmax((left + right) / 2, left + half),
-                               y - 0.8 * height, 0.5, 1, height, text));
-    snow_overlay_settle_mirrored(overlay, first, true);
-    if (overlay->shape_count == first)
-        snow_notify(context, "the picture has no room for the scale bar");
-    return SNOW_STATUS_OK;
+    const double half = height * snow_font_width(text) / 2;
+    return snow_overlay_text(
+        overlay, fmin((left + right) / 2, overlay->width - edge - half),
+        y - 0.8 * height, 0.5, 1, height, text);
+}
+
+double snow_overlay_strip(const snow_overlay *overlay) {
+    /* "500 mm" has room in any case. */
+    const double scale = 5.4 * snow_number_height(overlay);
+    const double share = fmax(overlay->strip, scale) / overlay->width;
+    if (snow_shorter_side(overlay) < SNOW_BAR_SIDE_LEAST)
+        return 0;
+    return fmin(fmax(share, SNOW_STRIP_LEAST), SNOW_STRIP_MOST);
 }

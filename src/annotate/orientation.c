@@ -4,7 +4,7 @@
  * Radiologists read them before anything else.  Directions are those of the
  * camera, in the RAS world (model, sections 1 and 2): the edge of the picture
  * towards the patient's left is labelled L. */
-#include "image/overlay.h"
+#include "annotate/strokes.h"
 #include "transform/transform.h"
 
 #include <snowglass/extend.h>
@@ -19,8 +19,8 @@
  * has the same letters in every quadrant. */
 #define TIE 1e-6
 
-/* How many places a letter has along its edge. */
-#define ROW 41
+/* Of letters from their edge, of the picture's shorter side. */
+#define MARGIN 0.02
 
 /* The letters of a direction in the world: those of its largest and second
  * largest component. */
@@ -64,27 +64,7 @@ snow_status snow_view_orientation(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* Draws a letter at the middle of its edge, or as near to it as there is room:
- * up to a tenth of the edge from a corner, or as far in two more rows. */
-static snow_status draw_letter(snow_overlay *overlay, const double place[2],
-                               const double share[2], const char *letter) {
-    size_t first = overlay->shape_count;
-    double offsets[3 * ROW][2] = {{0, 0}};
-    bool level = share[0] == 0.5; /* an edge at the top or the bottom */
-    int edge = level ? overlay->width : overlay->height;
-    double height = snow_overlay_text_height(overlay);
-    SNOW_TRY(snow_overlay_text(overlay, place[0], place[1], share[0], share[1],
-                               height, letter));
-    for (int n = 0; n < 3 * ROW; n++) {
-        int step = (n % ROW + 1) / 2 * (n % 2 ? 1 : -1);
-        offsets[n][!level] = floor(0.8 / (ROW - 1) * edge * step);
-        offsets[n][level] = floor(n / ROW * 5 * height * (0.5 - share[level]));
-    }
-    snow_overlay_settle(overlay, first, (const double(*)[2])offsets, 3 * ROW,
-                        false);
-    return SNOW_STATUS_OK;
-}
-
+/* At the middle of each edge, always. */
 snow_status snow_overlay_orientation(snow_overlay *overlay,
                                      const snow_volume_info *info,
                                      const snow_view *view) {
@@ -95,12 +75,13 @@ snow_status snow_overlay_orientation(snow_overlay *overlay,
     SNOW_TRY(snow_view_orientation(overlay->context, info, view, letters));
     if (overlay->width < 64 || overlay->height < 64)
         return SNOW_STATUS_OK;
-    double margin = 0.6 * snow_overlay_text_height(overlay);
-    for (int n = 0; n < 4; n++) {
-        const double place[2] = {
-            margin + shares[n][0] * (overlay->width - 2 * margin),
-            margin + shares[n][1] * (overlay->height - 2 * margin)};
-        SNOW_TRY(draw_letter(overlay, place, shares[n], letters[n]));
-    }
+    double margin = MARGIN * snow_shorter_side(overlay);
+    for (int n = 0; n < 4; n++)
+        SNOW_TRY(snow_overlay_text(
+            overlay,
+            margin + shares[n][0] * (snow_view_room(view) - 2 * margin),
+            margin + shares[n][1] * (overlay->height - 2 * margin),
+            shares[n][0], shares[n][1], snow_overlay_text_height(overlay),
+            letters[n]));
     return SNOW_STATUS_OK;
 }

@@ -18,10 +18,18 @@ static inline double snow_shorter_side(const snow_overlay *overlay) {
     return fmin(overlay->width, overlay->height);
 }
 
-/* The height of the numbers beside bars. */
+/* The height of the letters of numbers and names. */
 static inline double snow_number_height(const snow_overlay *overlay) {
-    return fmax(9, floor(0.028 * snow_shorter_side(overlay) + 0.5));
+    return fmax(9, floor(0.022 * snow_shorter_side(overlay) + 0.5));
 }
+
+/* A legend stands in a strip at the right, so much of the width at least and at
+ * most, and so far from its edges, in heights of its letters.  Below is room
+ * for the scale bar. */
+#define SNOW_STRIP_LEAST 0.12
+#define SNOW_STRIP_MOST 0.5
+#define SNOW_STRIP_MARGIN 0.6
+#define SNOW_STRIP_BELOW 3.6
 
 static inline snow_status snow_begin_strokes(snow_overlay *overlay,
                                              double height) {

@@ -21,9 +21,6 @@
 #define DARK 0.0f
 #define BORDER_OPACITY 0.8f
 
-/* Between shapes at least, of a picture's shorter side. */
-#define GAP 0.025
-
 snow_status snow_overlay_new(snow_context *context, int width, int height,
                              snow_overlay **out) {
     if (width < 1 || height < 1 || width > SNOW_IMAGE_SIDE ||
@@ -108,89 +105,21 @@ snow_status snow_overlay_rows(snow_overlay *overlay, int x0, int y0, int x1,
 
 /* --- places --------------------------------------------------------------- */
 
-void snow_overlay_keep_off(snow_overlay *overlay, const snow_image *image) {
+void snow_overlay_set_picture(snow_overlay *overlay, const snow_image *image) {
     overlay->below = image;
 }
 
-static void bounds_of(const snow_overlay *overlay, size_t first,
-                      const double offset[2], double box[4]) {
-    for (int i = 0; i < 4; i++) {
-        box[i] = i < 2 ? INFINITY : -INFINITY;
-        for (size_t n = first; n < overlay->shape_count; n++) {
-            double at = overlay->shapes[n].box[i];
-            box[i] = i < 2 ? fmin(box[i], at) : fmax(box[i], at);
-        }
-        box[i] += offset[i % 2];
-    }
-}
-
-/* What is clear, and what is more than a veil. */
-#define CLEAR 0.05F
-#define VEIL 0.5F
-
-/* 0: a box covers an earlier shape; 1: the object of the picture; 2: a veil; 3:
- * nothing. */
-static int room_at(const snow_overlay *overlay, size_t first,
-                   const double box[4]) {
-    const snow_image *below = overlay->below;
-    int channels = below ? below->channels : 0;
-    double gap = GAP * fmin(overlay->width, overlay->height);
-    for (size_t n = 0; n < first; n++) {
-        const double *other = overlay->shapes[n].box;
-        if (box[0] - gap < other[2] && other[0] < box[2] + gap &&
-            box[1] - gap < other[3] && other[1] < box[3] + gap)
-            return 0;
-    }
-    float most = 0;
-    for (int y = (int)fmax(box[1], 0);
-         channels > 1 && y < fmin(box[3], below->height); y++)
-        for (int x = (int)fmax(box[0], 0); x < fmin(box[2], below->width); x++)
-            most = fmaxf(
-                most,
-                below->pixels[((size_t)y * (size_t)below->width + (size_t)x) *
-                                  (size_t)channels +
-                              (size_t)channels - 1]);
-    return most > VEIL ? 1 : most > CLEAR ? 2 : 3;
-}
-
-static void move_shape(snow_overlay *overlay, snow_shape *shape,
-                       const double offset[2]) {
-    float *numbers = overlay->numbers + shape->first;
-    for (int i = 0; i < 4; i++)
-        shape->box[i] += offset[i % 2];
-    for (size_t n = 0; !shape->filled && n < 4 * shape->count; n++)
-        numbers[n] += (float)offset[n % 2];
-}
-
-void snow_overlay_settle(snow_overlay *overlay, size_t first,
-                         const double (*offsets)[2], int count, bool clear) {
-    const int enough = clear ? 3 : 2;
-    int best = 0, most = 0;
-    if (first == overlay->shape_count)
-        return;
-    for (int n = 0; n < count && most < enough; n++) {
-        double box[4];
-        bounds_of(overlay, first, offsets[n], box);
-        int capacity = room_at(overlay, first, box);
-        best = capacity > most ? n : best;
-        most = capacity > most ? capacity : most;
-    }
-    if (!most)
-        overlay->shape_count = first;
+bool snow_overlay_meets(const snow_overlay *overlay, size_t first,
+                        size_t before) {
     for (size_t n = first; n < overlay->shape_count; n++)
-        move_shape(overlay, &overlay->shapes[n], offsets[best]);
-}
-
-void snow_overlay_settle_mirrored(snow_overlay *overlay, size_t first,
-                                  bool sideways) {
-    double box[4], offsets[4][2] = {{0, 0}};
-    bounds_of(overlay, first, offsets[0], box);
-    double x = floor(overlay->width - box[0] - box[2]);
-    double y = floor(overlay->height - box[1] - box[3]);
-    offsets[sideways ? 1 : 2][0] = offsets[3][0] = x;
-    offsets[sideways ? 2 : 1][1] = offsets[3][1] = y;
-    snow_overlay_settle(overlay, first, (const double(*)[2])offsets, 4,
-                        !sideways);
+        for (size_t m = 0; m < before; m++) {
+            const double *own = overlay->shapes[n].box;
+            const double *other = overlay->shapes[m].box;
+            if (own[0] < other[2] && other[0] < own[2] && own[1] < other[3] &&
+                other[1] < own[3])
+                return true;
+        }
+    return false;
 }
 
 /* --- drawing -------------------------------------------------------------- */

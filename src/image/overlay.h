@@ -21,7 +21,8 @@ struct snow_overlay {
     snow_context *context;
     int width, height;
     bool grey;               /* no shape has a colour */
-    const snow_image *below; /* the picture that shapes keep off, or NULL */
+    const snow_image *below; /* the picture that hides edges, or NULL */
+    double strip;            /* pixels at the right that bars take */
     snow_shape *shapes;
     size_t shape_count;
     float *numbers;
@@ -39,17 +40,9 @@ snow_status snow_overlay_stroke(snow_overlay *overlay, double x0, double y0,
 snow_status snow_overlay_rows(snow_overlay *overlay, int x0, int y0, int x1,
                               int y1, const float *colors);
 
-/* Moves the shapes from `first` on by the first of some offsets at which they
- * cover no earlier one, and if it is possible no object of the picture below,
- * nor, if `clear`, a veil.
- * Without such an offset they are removed. */
-void snow_overlay_settle(snow_overlay *overlay, size_t first,
-                         const double (*offsets)[2], int count, bool clear);
-
-/* The same with the four places that mirror the present one: beside it first
- * if `sideways`, otherwise above or below it. */
-void snow_overlay_settle_mirrored(snow_overlay *overlay, size_t first,
-                                  bool sideways);
+/* Whether shapes from `first` on cover some of the first `before` ones. */
+bool snow_overlay_meets(const snow_overlay *overlay, size_t first,
+                        size_t before);
 
 /* --- font.c: a stroke font of any size: letters of Latin-1, as UTF-8 ---
 

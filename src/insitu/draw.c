@@ -217,6 +217,8 @@ static snow_status make_picture(snow_insitu *insitu, snow_image **out) {
         status = snow_frame_new(insitu->context, &insitu->frame);
     INSITU_TRY(snow_comm_agree_status(insitu->comm, status));
     INSITU_TRY(choose_look(insitu));
+    INSITU_TRY(snow_insitu_leave_strip(insitu));
+    view.strip = snow_insitu_view(insitu).strip;
     if (!insitu->shaded && snow_transfer_is_unshaded(insitu->transfer) &&
         settings.mode != SNOW_MODE_ISO)
         settings.shade = SNOW_SHADE_NONE; /* as the tool */

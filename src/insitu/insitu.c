@@ -203,9 +203,10 @@ snow_status snow_insitu_end(snow_insitu *insitu, snow_status status) {
 /* --- the picture ---------------------------------------------------------- */
 
 snow_view snow_insitu_view(const snow_insitu *insitu) {
-    if (insitu->has_view)
-        return insitu->view;
-    snow_view view;
-    snow_view_init(&view);
+    snow_view view = insitu->view;
+    if (!insitu->has_view)
+        snow_view_init(&view);
+    if (insitu->strip > 0)
+        view.strip = insitu->strip;
     return view;
 }

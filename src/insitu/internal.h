@@ -118,6 +118,7 @@ struct snow_insitu {
     snow_own_look look;
     snow_view view;
     bool has_view;
+    double strip; /* of the pictures, for their legend; 0: not known yet */
     snow_settings settings;
     bool shaded; /* as they say, whatever the look */
     double clips[SNOW_CLIPS_MAX][4];
@@ -210,6 +211,9 @@ void snow_insitu_forget(snow_insitu *insitu);
 
 /* The view of the picture: as given, or the default one. */
 snow_view snow_insitu_view(const snow_insitu *insitu);
+
+/* Leaves a strip of the pictures to the legend, once the look is known. */
+snow_status snow_insitu_leave_strip(snow_insitu *insitu);
 
 /* View and settings of pictures of the voxels last taken, lowered for limits
  * (limits.c). */

@@ -88,19 +88,44 @@ static bool format_path(const snow_insitu *insitu, int64_t step, char *out,
     return length > 0 && (size_t)length < capacity;
 }
 
+static snow_status add_bar(const snow_insitu *insitu, const double range[2],
+                           snow_overlay *overlay) {
+    const snow_volume_info *says = &insitu->says;
+    char text[2 * TEXT_BYTES];
+    bool both = *says->quantity && *says->value_unit;
+    if (!insitu->annotations.legend)
+        return SNOW_STATUS_OK;
+    snprintf(text, sizeof text, "%s%s%s%s", says->quantity, both ? " (" : "",
+             says->value_unit, both ? ")" : "");
+    return snow_overlay_color_bar(overlay, insitu->transfer, text, range, 0, 1);
+}
+
+snow_status snow_insitu_leave_strip(snow_insitu *insitu) {
+    const snow_view view = snow_insitu_view(insitu);
+    snow_overlay *overlay = NULL;
+    if (!insitu->annotations.scale_bar || insitu->strip > 0 ||
+        snow_image_format_bits(insitu->pattern) <= 0)
+        return SNOW_STATUS_OK;
+    INSITU_TRY(
+        snow_overlay_new(insitu->context, view.width, view.height, &overlay));
+    /* Sums are not known yet: room for numbers of such a magnitude. */
+    const double sums[2] = {-1e4, 1e4};
+    const bool summed = insitu->settings.mode == SNOW_MODE_MEAN ||
+                        insitu->settings.mode == SNOW_MODE_SUM;
+    snow_status status = add_bar(insitu, summed ? sums : NULL, overlay);
+    if (insitu->annotations.legend || !(view.fov > 0))
+        insitu->strip = snow_overlay_strip(overlay);
+    snow_overlay_free(overlay);
+    return status;
+}
+
 /* Bars and the step's number for a picture that was enlarged to its size, where
  * it was drawn smaller; `range` of values that colours are of, or NULL. */
 static snow_status add_marks(snow_insitu *insitu, int64_t step,
                              const double range[2], snow_overlay *overlay) {
     snow_view view = snow_insitu_view(insitu);
-    const snow_volume_info *says = &insitu->says;
     char text[2 * TEXT_BYTES];
-    bool both = *says->quantity && *says->value_unit;
-    snprintf(text, sizeof text, "%s%s%s%s", says->quantity, both ? " (" : "",
-             says->value_unit, both ? ")" : "");
-    if (insitu->annotations.legend)
-        INSITU_TRY(
-            snow_overlay_color_bar(overlay, insitu->transfer, text, range));
+    INSITU_TRY(add_bar(insitu, range, overlay));
     if (insitu->annotations.scale_bar)
         INSITU_TRY(snow_overlay_scale_bar(overlay, &insitu->whole, &view));
     write_title(insitu, step, text, sizeof text);
@@ -186,7 +211,7 @@ static snow_status save_colors(snow_insitu *insitu, int64_t step,
         return snow_image_save(image, path, &form);
     INSITU_TRY(snow_overlay_new(insitu->context, snow_image_width(image),
                                 snow_image_height(image), &overlay));
-    snow_overlay_keep_off(overlay, image);
+    snow_overlay_set_picture(overlay, image);
     snow_status status = add_marks(insitu, step, range, overlay);
     form.overlay = overlay;
     if (status == SNOW_STATUS_OK)

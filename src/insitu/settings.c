@@ -106,6 +106,7 @@ static snow_status keep_annotations(snow_insitu *insitu,
     marks.quantity = marks.unit = NULL;
     marks.scale_bar = marks.legend || marks.scale_bar;
     insitu->annotations = marks;
+    insitu->strip = 0;
     return SNOW_STATUS_OK;
 }
 

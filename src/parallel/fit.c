@@ -56,7 +56,7 @@ static void find_margin(const fit *f, const snow_camera *camera,
 static void add_place(const snow_view *view, const snow_camera *camera,
                       const double at[3], const double margin[3],
                       double bounds[4]) {
-    const double half[2] = {camera->pitch / 2 * view->width,
+    const double half[2] = {camera->pitch / 2 * snow_view_room(view),
                             camera->pitch / 2 * view->height};
     double depth = camera->distance;
     double scale = depth > 0 ? depth / (depth - at[2] - margin[2]) : 1;
@@ -218,7 +218,8 @@ static snow_status fit_view(fit *f, snow_comm *comm, const snow_volume *volume,
         /* Perspective moves the middle of the bounds, which is put right again.
          */
         const double half = f->cameras[0].pitch / 2, *in = bounds + PLACES;
-        const double step[3] = {(in[0] - in[1]) / 2 * half * view->width,
+        const double step[3] = {(in[0] - in[1]) / 2 * half *
+                                    snow_view_room(view),
                                 (in[2] - in[3]) / 2 * half * view->height, 0};
         move_target(f, step, view);
         SNOW_TRY(place_cameras(f, azimuths, view));

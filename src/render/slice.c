@@ -82,14 +82,15 @@ static void frame_slice(const snow_volume_info *info, int axis,
         pitch = fmin(pitch, snow_length(steps[n]));
     }
     if (view->width > 0 && view->height > 0) {
-        pitch = fmax(width / view->width, height / view->height);
+        pitch = fmax(width / snow_view_room(view), height / view->height);
     } else {
-        pitch = fmax(pitch, fmax(width, height) / SNOW_IMAGE_SIDE);
-        view->width = (int)fmax(rint(width / pitch), 1);
+        double wide = width / (1 - view->strip);
+        pitch = fmax(pitch, fmax(wide, height) / SNOW_IMAGE_SIDE);
+        view->width = (int)fmax(rint(wide / pitch), 1);
         view->height = (int)fmax(rint(height / pitch), 1);
     }
     view->zoom = 2 * snow_volume_radius(info) /
-                 (pitch * fmin(view->width, view->height));
+                 (pitch * fmin(snow_view_room(view), view->height));
 }
 
 snow_status snow_slice_view(snow_context *context, const snow_volume_info *info,

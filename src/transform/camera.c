@@ -14,6 +14,10 @@
 /* Sine of the angle below which two directions count as parallel. */
 #define ALONG 1e-6
 
+int snow_view_room(const snow_view *view) {
+    return view->width - (int)(view->strip * view->width + 0.5);
+}
+
 static snow_status check_numbers(snow_context *context, const snow_view *view) {
     if (view->width < 1 || view->width > 32768 || view->height < 1 ||
         view->height > 32768)
@@ -21,6 +25,11 @@ static snow_status check_numbers(snow_context *context, const snow_view *view) {
             context, SNOW_STATUS_BAD_USAGE,
             "invalid image size %dx%d: each side must be 1 to 32768 pixels",
             view->width, view->height);
+    if (!(view->strip >= 0 && view->strip <= 0.5))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "invalid strip of %g of the width for a legend: must "
+                         "be 0 to 0.5",
+                         view->strip);
     if (!(view->zoom > 0) || !isfinite(view->zoom))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "invalid zoom %g: must be a number above 0",
@@ -116,7 +125,7 @@ static snow_status look_up(snow_context *context, const snow_view *view,
  * of radius R, and is R / cos(fov / 2) wide at the target. */
 static void measure_distance(const snow_volume_info *info,
                              const snow_view *view, snow_camera *out) {
-    double side = view->zoom * fmin(view->width, view->height);
+    double side = view->zoom * fmin(snow_view_room(view), view->height);
     double radius = snow_volume_radius(info), half = view->fov / 2 * RADIAN;
     if (view->fov > 0 && view->has_position) {
         out->pitch = 2 * out->distance * tan(half) / side;
@@ -180,6 +189,8 @@ snow_status snow_camera_make(snow_context *context,
     c.middle[0] = snow_dot(middle, c.right);
     c.middle[1] = snow_dot(middle, c.up);
     c.middle[2] = snow_dot(middle, c.back);
+    c.target[0] = snow_view_room(view) / 2.0;
+    c.target[1] = view->height / 2.0;
     SNOW_TRY(check_front(context, info, &c));
     *out = c;
     return SNOW_STATUS_OK;

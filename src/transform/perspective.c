@@ -46,7 +46,7 @@ bool snow_perspective_place(const snow_volume_info *info, const snow_camera *at,
     const double middle[3] = {(double)(p->columns - 1) / 2,
                               (double)(p->rows - 1) / 2,
                               (double)(p->slices - 1) / 2};
-    const double half[2] = {p->width / 2.0, p->height / 2.0};
+    const double *half = at->target;
     for (int i = 0; i < 3; i++) {
         eye.middle[i] = middle[i];
         eye.at[i] = middle[i] - at->middle[0] * steps[i][0] +

@@ -69,9 +69,8 @@ static void place_slices(const snow_volume_info *info,
     steps[p->u_axis] = p->step_u;
     steps[p->v_axis] = p->step_v;
     steps[p->slice_axis] = p->step_slice;
-    /* The target is shown in the image's middle. */
-    p->origin[0] = p->width / 2.0 + camera->middle[0] / pitch;
-    p->origin[1] = p->height / 2.0 - camera->middle[1] / pitch;
+    p->origin[0] = camera->target[0] + camera->middle[0] / pitch;
+    p->origin[1] = camera->target[1] - camera->middle[1] / pitch;
     for (int axis = 0; axis < 3; axis++) {
         double step[3];
         step_of(info, axis, step);

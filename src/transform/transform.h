@@ -16,13 +16,18 @@
 
 #include <snowglass/view.h>
 
-/* A camera relative to its target, which is in the middle of the picture. */
+/* The pixels of a picture's width that are not left to a legend. */
+int snow_view_room(const snow_view *view);
+
+/* A camera relative to its target, which is in the middle of the picture, but
+ * for what is left to a legend. */
 typedef struct snow_camera {
     /* A right-handed frame of unit vectors in world space. */
     double right[3], up[3], back[3];
     double middle[3]; /* of the voxel boxes along right, up and back */
     double distance;  /* of the eye; 0: a parallel projection */
     double pitch;     /* world length of a pixel's side, at the target */
+    double target[2]; /* where it is in the picture, in pixels */
 } snow_camera;
 
 /* The eye of a perspective view. Vectors are in steps of (u, v, slice). */

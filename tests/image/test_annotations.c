@@ -180,7 +180,7 @@ static void edges_behind_are_hidden_by_the_picture(void **state) {
         for (int y = 0; y < 400 && n; y++)
             for (int x = 0; x < (n == 1 ? 200 : 400); x++)
                 snow_image_pixels(image)[(y * 400 + x) * 4 + 3] = 1;
-        snow_overlay_keep_off(overlay, image);
+        snow_overlay_set_picture(overlay, image);
         draw_box(overlay, &block, &view, false);
         strokes[n] = overlay->shapes[0].count;
         snow_overlay_free(overlay);

@@ -352,8 +352,8 @@ static void the_scale_bar_is_as_long_as_it_says(void **state) {
         double share = length / ten;
         assert_true(fabs(share - 1) < 1e-4 || fabs(share - 2) < 1e-4 ||
                     fabs(share - 5) < 1e-4);
-        assert_true(overlay->numbers[2] - overlay->numbers[0] < 0.31f * 512);
-        assert_true(overlay->numbers[2] - overlay->numbers[0] > 0.1f * 512);
+        assert_true(overlay->numbers[2] - overlay->numbers[0] < 0.12f * 512);
+        assert_true(overlay->numbers[2] - overlay->numbers[0] > 0.03f * 512);
         snow_overlay_free(overlay);
     }
 }
@@ -403,8 +403,9 @@ static void the_color_bar_has_the_transfer_functions_colors(void **state) {
         snow_transfer_new(f->context, colors, 2, opacities, 2, &transfer),
         SNOW_STATUS_OK);
     snow_overlay *overlay = overlay_of(f->context, 300, 400);
-    assert_int_equal(snow_overlay_color_bar(overlay, transfer, "HU", NULL),
-                     SNOW_STATUS_OK);
+    assert_int_equal(
+        snow_overlay_color_bar(overlay, transfer, "HU", NULL, 0, 1),
+        SNOW_STATUS_OK);
     assert_false(overlay->grey);
     const snow_shape *bar = NULL;
     for (size_t n = 0; n < overlay->shape_count; n++)
@@ -436,8 +437,9 @@ static void check_scale(image_fixture *f, snow_look look, const double ends[2],
     look.opacity_count = 2;
     snow_transfer *transfer = support_look(volume, look);
     snow_overlay *overlay = overlay_of(f->context, 300, 400);
-    assert_int_equal(snow_overlay_color_bar(overlay, transfer, NULL, NULL),
-                     SNOW_STATUS_OK);
+    assert_int_equal(
+        snow_overlay_color_bar(overlay, transfer, NULL, NULL, 0, 1),
+        SNOW_STATUS_OK);
     size_t rows = 0;
     double top = 0, bottom = 0;
     for (size_t n = 0; n < overlay->shape_count; n++) {
@@ -526,7 +528,7 @@ static void any_range_has_ticks(void **state) {
                              SNOW_STATUS_OK);
             snow_overlay *overlay = overlay_of(f->context, side, side);
             assert_int_equal(
-                snow_overlay_color_bar(overlay, transfer, NULL, NULL),
+                snow_overlay_color_bar(overlay, transfer, NULL, NULL, 0, 1),
                 SNOW_STATUS_OK);
             /* border, colours, opacity, tick lines, and a text for each */
             assert_true(overlay->shape_count >= 5);
@@ -624,7 +626,8 @@ static void it_fails_cleanly_without_memory(void **state) {
         if (status == SNOW_STATUS_OK)
             status = snow_overlay_orientation(overlay, &info, &view);
         if (status == SNOW_STATUS_OK)
-            status = snow_overlay_color_bar(overlay, transfer, "HU", NULL);
+            status =
+                snow_overlay_color_bar(overlay, transfer, "HU", NULL, 0, 1);
         if (status == SNOW_STATUS_OK)
             status = snow_overlay_scale_bar(overlay, &info, &view);
         assert_true(status == SNOW_STATUS_OK ||

@@ -49,7 +49,7 @@ def call_ms(volume):
         begin = time.thread_time()
         volume._render(Image, transfer, None,
                        {"width": 64, "height": 64, "azimuth": 10.0},
-                       {"threads": 1}, False, None, None, (), False, 1.0)
+                       {"threads": 1}, False, None, None, (), False, 1.0, None)
         return time.thread_time() - begin
 
     def call():

@@ -77,14 +77,17 @@ class Pictures(InFolder):
                 head().render(size=size)
 
     def test_saved_pictures_have_letters_and_bars(self):
-        image = head().render(size=256, legend=True)
+        image = head().render(size=256)
         plain = head().render(size=256, letters=False)
-        image.save("with.png")
-        plain.save("without.png")
-        difference = sg.compare("with.png",
-                                "without.png")
-        self.assertGreater(difference.largest, 0.5)
+        legend = head().render(size=256, legend=True, letters=False)
+        for n, picture in enumerate((image, plain, legend)):
+            picture.save(f"{n}.png")
+        for n in (0, 2):
+            self.assertGreater(sg.compare(f"{n}.png", "1.png").largest, 0.5)
         self.same_picture(image, plain)
+        # An eighth of the width is left to the legend.
+        self.assertEqual(numpy.asarray(legend)[:, -31:, -1].max(), 0)
+        self.assertGreater(numpy.asarray(plain)[:, -31:, -1].max(), 0)
         self.assertTrue(image._repr_png_().startswith(b"\x89PNG"))
 
     def test_arrays_of_them_are_not_copies_and_outlive_them(self):
