@@ -1,13 +1,14 @@
 /* parallel/fit.c - frames what a look shows: the bounds before the camera of
- * the interesting voxels, of one process or of all ranks' parts.
+ * the interesting voxels that can be seen, of one process or of all ranks'
+ * parts.
  *
  * A row's first and last interesting voxel bound the others of it, in
  * perspective too. Bounds are largest values, which do not depend on the order
  * of rows, threads and ranks. */
 #include "base/monitor.h"
 #include "base/vec3.h"
-#include "classify/count_interesting.h"
 #include "comm/comm.h"
+#include "parallel/fit_object.h"
 #include "render/job.h"
 #include "volume/stream.h"
 
@@ -32,8 +33,13 @@ typedef struct fit {
     snow_camera *cameras;
     double (*margins)[3]; /* of each: half a voxel along right, up and back */
     size_t count;
-    double (*bounds)[BOUNDS]; /* of each worker */
+    snow_interesting_fn *visit; /* of the present walk */
+    double (*bounds)[BOUNDS];   /* of each worker */
+    snow_fit_object object;     /* what can be seen */
 } fit;
+
+/* Sides of a turn from which is decided what can be seen. */
+#define SIDES 8
 
 /* --- bounds --------------------------------------------------------------- */
 
@@ -98,27 +104,42 @@ static void begin_bounds(double bounds[BOUNDS]) {
 
 /* --- voxels --------------------------------------------------------------- */
 
+static void add_row(void *of, const snow_interesting_row *row) {
+    fit *f = of;
+    snow_fit_object_add(&f->object, row);
+}
+
 static void bound_row(void *of, const snow_interesting_row *row) {
     const fit *f = of;
-    for (int side = 0; side < 2; side++) {
-        const uint32_t column = row->columns[side ? row->count - 1 : 0];
+    size_t ends[2];
+    const bool any = snow_fit_object_trim(&f->object, row, &ends[0], &ends[1]);
+    for (int side = 0; any && side < 2; side++) {
+        const uint32_t column = row->columns[ends[side]];
         const double voxel[3] = {(double)(row->stored + column), (double)row->y,
                                  (double)row->z};
         add_voxel(f, voxel, f->bounds[row->worker]);
     }
 }
 
-static snow_status bound_slab(const snow_volume *slab, void *user) {
+static snow_status visit_slab(const snow_volume *slab, void *user) {
     const fit *f = user;
     const snow_interesting_walk walk = {
         .volume = slab,
         .transfer = f->transfer,
         .threshold = f->settings.threshold,
         .exponent = 1,
+        .only_counts = f->visit == bound_row,
         .isa = f->settings.isa,
         /* under a limit there may be no room for more row blocks */
         .threads = f->context->limit ? 1 : f->settings.threads};
-    return snow_visit_interesting(&walk, bound_row, user);
+    return snow_visit_interesting(&walk, f->visit, user);
+}
+
+static snow_status visit_slabs(fit *f, const snow_volume *volume,
+                               snow_interesting_fn *visit) {
+    const snow_slab_cut cut = {.ghosts = f->transfer->gradient_count > 0};
+    f->visit = visit;
+    return snow_slabs_visit(volume, &cut, visit_slab, f);
 }
 
 /* The middles of the voxels at the corners. */
@@ -132,15 +153,13 @@ static void bound_box(const fit *f) {
 }
 
 /* Collective.  One walk over what is shown. */
-static snow_status find_bounds(const fit *f, snow_comm *comm,
+static snow_status find_bounds(fit *f, snow_comm *comm,
                                const snow_volume *volume, double out[BOUNDS]) {
-    const snow_slab_cut cut = {.ghosts = f->transfer &&
-                                         f->transfer->gradient_count > 0};
     snow_status status = SNOW_STATUS_OK;
     for (int i = 0; i < f->settings.threads; i++)
         begin_bounds(f->bounds[i]);
     if (f->transfer)
-        status = snow_slabs_visit(volume, &cut, bound_slab, (void *)f);
+        status = visit_slabs(f, volume, bound_row);
     begin_bounds(out);
     for (int i = 0; i < f->settings.threads; i++)
         for (int n = 0; n < BOUNDS; n++)
@@ -196,12 +215,30 @@ static void aim(const fit *f, const double bounds[BOUNDS], snow_view *view) {
     move_target(f, step, view);
 }
 
-/* The first walk finds the target, the last one how far what is shown is from
+/* Collective.  One walk for what can be seen. */
+static snow_status find_object(fit *f, snow_comm *comm,
+                               const snow_volume *volume) {
+    if (!f->transfer)
+        return SNOW_STATUS_OK;
+    snow_status status = snow_fit_object_make(
+        f->context, &f->whole, f->settings.opacity_length, &f->object);
+    if (status == SNOW_STATUS_OK)
+        status = visit_slabs(f, volume, add_row);
+    if (comm)
+        status = snow_comm_agree_status(comm, status);
+    const size_t step = (f->count - 1) / SIDES + 1;
+    for (size_t n = 0; n < f->count && status == SNOW_STATUS_OK; n += step)
+        status = snow_fit_object_see(&f->object, comm, &f->cameras[n]);
+    return status;
+}
+
+/* The second walk finds the target, the last one how far what is shown is from
  * it. */
 static snow_status fit_view(fit *f, snow_comm *comm, const snow_volume *volume,
                             const double *azimuths, snow_view *view) {
     double bounds[BOUNDS], zoom = view->zoom, reach = 0;
     SNOW_TRY(place_cameras(f, azimuths, view));
+    SNOW_TRY(find_object(f, comm, volume));
     SNOW_TRY(find_bounds(f, comm, volume, bounds));
     view->zoom = 1;
     aim(f, bounds, view);
@@ -261,7 +298,9 @@ snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
                           const snow_transfer *transfer,
                           const snow_settings *settings, const double *azimuths,
                           size_t count, snow_view *view) {
-    fit f = {.context = volume->context, .transfer = transfer};
+    fit f = {.context = volume->context,
+             .transfer = transfer,
+             .object = {.context = volume->context}};
     snow_transfer *own = NULL;
     snow_view fitted;
     snow_volume_whole(volume, &f.whole);
@@ -285,6 +324,7 @@ snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
     snow_release(f.context, f.cameras);
     snow_release(f.context, f.margins);
     snow_release(f.context, f.bounds);
+    snow_fit_object_free(&f.object);
     snow_transfer_free(own);
     return status == SNOW_STATUS_OK
                ? SNOW_RECORD_FILL(f.context, snow_view, &fitted, view)
