@@ -75,6 +75,8 @@ typedef struct snow_look {
     const snow_opacity_point *gradient_opacities;
     size_t gradient_opacity_count;
     double symlog; /* linear up to it, logarithms beyond; -1: chosen */
+    bool overlay;  /* of a second volume in the picture of a first; what it does
+                      not say is chosen for that (docs/looks.md) */
 } snow_look;
 SNOW_RECORD(snow_look);
 /* For `look` (or NULL) on `volume`, the same on every machine. A preset in data

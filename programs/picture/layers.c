@@ -77,8 +77,7 @@ static snow_opacity_point *scale_points(const snow_transfer *transfer,
     return out;
 }
 
-/* Labels where it has some; else, where nothing is asked, hot colours.  Values
- * of all steps have the look of the first; labels may be others. */
+/* Values of all steps have the look of the first; labels may be others. */
 static snow_status make_look(const options *opts, layers *l) {
     const snow_volume *of = l->own ? l->own : l->volume;
     const overlay_look_value *given = &opts->overlay_look;
@@ -90,7 +89,8 @@ static snow_status make_look(const options *opts, layers *l) {
                       .colormap = *given->colormap ? given->colormap : NULL,
                       .range = range.kind,
                       .low = range.low,
-                      .high = range.high};
+                      .high = range.high,
+                      .overlay = true};
     if (l->transfer && (l->own || !snow_transfer_label(l->transfer, 0)))
         return SNOW_STATUS_OK;
     layers_drop_look(l);
@@ -100,13 +100,6 @@ static snow_status make_look(const options *opts, layers *l) {
     }
     snow_transfer *whole = NULL;
     snow_status status = snow_transfer_new_for_volume(of, &look, &whole);
-    if (status == SNOW_STATUS_OK && !look.preset && !look.colormap &&
-        !snow_transfer_label(whole, 0)) {
-        snow_transfer_free(whole);
-        whole = NULL;
-        look.colormap = "hot";
-        status = snow_transfer_new_for_volume(of, &look, &whole);
-    }
     if (status != SNOW_STATUS_OK || !factor) {
         l->transfer = whole;
         return status;

@@ -45,12 +45,8 @@ def _opened(base: Any, overlay: Any) -> _snowglass.Volume:
 
 
 def _look(volume: _snowglass.Volume, look: Look) -> _snowglass.Transfer:
-    """Labels where there are some; else, where nothing is asked, hot colours."""
-    made = volume._look(*look._arguments())
-    if made.labelled or look.preset or look.colormap or look.colors:
-        return made
-    hot = dataclasses.replace(look, colormap="hot", cmap=None, clim=None)
-    return volume._look(*hot._arguments())
+    fields, *others = look._arguments()
+    return volume._look({**fields, "overlay": True}, *others)
 
 
 def overlaid(base: Any, overlay: Any, look: Union[Look, str, None]

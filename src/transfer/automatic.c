@@ -236,16 +236,6 @@ snow_status snow_histogram_split_at(const snow_histogram *histogram,
     return SNOW_STATUS_OK;
 }
 
-/* Appends a point; its value is raised to that of the point before it, if
- * lower. */
-static void add_opacity(snow_transfer_builder *builder, double value,
-                        double opacity) {
-    size_t n = builder->opacity_count++;
-    if (n && value < builder->opacities[n - 1].value)
-        value = builder->opacities[n - 1].value;
-    builder->opacities[n] = (snow_opacity_point){value, opacity};
-}
-
 static void build_grey(snow_transfer_builder *builder, const char *name,
                        double low, double high, double dark, double light) {
     builder->name = name;
@@ -262,15 +252,19 @@ static void build_solid(const snow_histogram_split *p, bool slice,
                         snow_scale scale, snow_transfer_builder *builder) {
     build_grey(builder, "dim-grey", p->low, p->high, 0, LIGHTEST);
     builder->unshaded = true;
-    add_opacity(builder, p->low, 0);
+    snow_transfer_builder_add_opacity(builder, p->low, 0);
     if (slice) {
-        add_opacity(builder, snow_between_on(scale, p->low, p->high, 0.05), 0);
-        add_opacity(builder, snow_between_on(scale, p->low, p->high, 0.06), 1);
+        snow_transfer_builder_add_opacity(
+            builder, snow_between_on(scale, p->low, p->high, 0.05), 0);
+        snow_transfer_builder_add_opacity(
+            builder, snow_between_on(scale, p->low, p->high, 0.06), 1);
         return;
     }
-    add_opacity(builder, snow_between_on(scale, p->low, p->high, 0.15), 0);
-    add_opacity(builder, snow_between_on(scale, p->low, p->high, 0.30), 0.30);
-    add_opacity(builder, p->high, 0.70);
+    snow_transfer_builder_add_opacity(
+        builder, snow_between_on(scale, p->low, p->high, 0.15), 0);
+    snow_transfer_builder_add_opacity(
+        builder, snow_between_on(scale, p->low, p->high, 0.30), 0.30);
+    snow_transfer_builder_add_opacity(builder, p->high, 0.70);
 }
 
 /* The number of axes with one voxel: 1 is a slice, 2 a row. */
@@ -302,8 +296,8 @@ static void build_constant(const snow_histogram *histogram,
     snow_full_range(histogram, &low, &high);
     build_grey(builder, "dim-grey", low, high, 0, LIGHTEST);
     builder->unshaded = true;
-    add_opacity(builder, low, 0);
-    add_opacity(builder, high, 0.8);
+    snow_transfer_builder_add_opacity(builder, low, 0);
+    snow_transfer_builder_add_opacity(builder, high, 0.8);
     builder->reason = "one value only";
 }
 
@@ -446,10 +440,10 @@ static snow_status build_field(const snow_histogram *histogram,
     builder->unshaded = true;
     builder->low = start;
     builder->high = top;
-    add_opacity(builder, start, 0);
-    add_opacity(builder, threshold, 0.025);
-    add_opacity(builder, object, 0.08);
-    add_opacity(builder, top, 0.5);
+    snow_transfer_builder_add_opacity(builder, start, 0);
+    snow_transfer_builder_add_opacity(builder, threshold, 0.025);
+    snow_transfer_builder_add_opacity(builder, object, 0.08);
+    snow_transfer_builder_add_opacity(builder, top, 0.5);
     return SNOW_STATUS_OK;
 }
 
@@ -505,8 +499,8 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
     if (p.fills_volume && !slice && histogram->masked && is_left(histogram)) {
         /* All that is left, with its surface. */
         build_grey(builder, "light-grey", p.low, p.high, DARKEST, 1);
-        add_opacity(builder, p.low, 0.5);
-        add_opacity(builder, p.high, 0.8);
+        snow_transfer_builder_add_opacity(builder, p.low, 0.5);
+        snow_transfer_builder_add_opacity(builder, p.high, 0.8);
         return SNOW_STATUS_OK;
     }
     if (slice || p.fills_volume) {
@@ -517,13 +511,13 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
     double start = p.with_faint
                        ? p.faint
                        : snow_between_on(scale, p.background, p.threshold, 0.6);
-    add_opacity(builder, start, 0);
+    snow_transfer_builder_add_opacity(builder, start, 0);
     if (p.with_faint)
-        add_opacity(builder, p.threshold, 0.05);
-    add_opacity(builder, snow_between_on(scale, p.threshold, p.object, 0.15),
-                0.25);
-    add_opacity(builder, p.object, 0.4);
-    add_opacity(builder, p.top, 0.8);
+        snow_transfer_builder_add_opacity(builder, p.threshold, 0.05);
+    snow_transfer_builder_add_opacity(
+        builder, snow_between_on(scale, p.threshold, p.object, 0.15), 0.25);
+    snow_transfer_builder_add_opacity(builder, p.object, 0.4);
+    snow_transfer_builder_add_opacity(builder, p.top, 0.8);
     build_grey(builder, "light-grey", start,
                builder->opacities[builder->opacity_count - 1].value, DARKEST,
                1);

@@ -127,6 +127,14 @@ snow_status snow_object_range(const snow_histogram *histogram, double *low,
     return SNOW_STATUS_OK;
 }
 
+void snow_transfer_builder_add_opacity(snow_transfer_builder *builder,
+                                       double value, double opacity) {
+    size_t n = builder->opacity_count++;
+    if (n && value < builder->opacities[n - 1].value)
+        value = builder->opacities[n - 1].value;
+    builder->opacities[n] = (snow_opacity_point){value, opacity};
+}
+
 /* Copies points; their values are shares of a range unless they are data
  * values. */
 static void copy_points(const snow_look *points, snow_scale scale, double low,

@@ -13,17 +13,17 @@ bool snow_look_is_of_labels(const snow_look *look) {
     return look->preset && snow_same_name(look->preset, "labels");
 }
 
-static bool is_unranged(const snow_look *look) {
+bool snow_look_is_unranged(const snow_look *look) {
     return look->range == SNOW_RANGE_AUTO && !look->log && look->symlog == 0;
 }
 
 bool snow_look_is_free(const snow_look *look) {
-    return !look->colormap && is_unranged(look);
+    return !look->colormap && snow_look_is_unranged(look);
 }
 
 bool snow_look_suits_labels(const snow_look *look) {
     snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
-    return is_unranged(look) &&
+    return snow_look_is_unranged(look) &&
            (!look->colormap || snow_colormap_list(look->colormap, points));
 }
 

@@ -5,7 +5,12 @@
  * have few values, and of which enough voxels beside the background equal their
  * six neighbours.  Of a part those neighbours count that it has.  Quantities
  * have few values too, where they are coarse: their neighbours differ by one
- * step, which those of many labels do not. */
+ * step, which those of many labels do not.
+ *
+ * An overlay is more often labels than a volume alone, and these may be lesions
+ * of a few voxels: so are all overlays of five values, and of more, unless
+ * they are counts, whose neighbours differ by 1, or noise, whose neighbours
+ * differ.  A volume alone of two values is a mask. */
 #include "transfer/walk.h"
 
 #include <math.h>
@@ -18,6 +23,10 @@
 #define EVEN 0.4
 #define STEPPED 0.95
 #define STEPS 6
+
+/* Values of an overlay, and of a mask. */
+#define OVERLAID 5
+#define MASK 2
 
 /* The most labels; and about how many voxels are compared with neighbours. */
 #define MOST 4096
@@ -33,8 +42,11 @@ typedef struct label_scan {
     double background;    /* its voxels are not compared */
     uint64_t even, all;   /* voxels */
     uint64_t next, apart; /* neighbours that differ: by a step, in all */
-    int64_t step;         /* of the rows whose voxels are compared */
-    bool labelled;        /* of the file */
+    /* Neighbours that are no background either: they are alike, differ, differ
+     * by 1. */
+    uint64_t alike, unlike, counted;
+    int64_t step;  /* of the rows whose voxels are compared */
+    bool labelled; /* of the file */
     snow_label *labels;
     size_t label_count;
 } label_scan;
@@ -93,8 +105,11 @@ static void compare_voxel(label_scan *s, double value, const double near[6]) {
     size_t at = place_of(s->values, s->count, value);
     bool even = true;
     for (int n = 0; n < 6; n++) {
+        s->alike += near[n] == value;
         if (near[n] == value || isnan(near[n]))
             continue;
+        s->unlike += near[n] != s->background;
+        s->counted += near[n] != s->background && fabs(near[n] - value) == 1;
         size_t other = place_of(s->values, s->count, near[n]);
         s->next += at + 1 == other || other + 1 == at;
         s->apart++;
@@ -208,13 +223,17 @@ static snow_status join_labels(snow_comm *comm, snow_context *context,
 }
 
 static snow_status join_scans(const snow_histogram *histogram, label_scan *s) {
-    uint64_t counts[5] = {s->even, s->all, s->next, s->apart, s->many};
-    SNOW_TRY(snow_histogram_sum(histogram, counts, 5));
+    uint64_t counts[8] = {s->even, s->all,   s->next,   s->apart,
+                          s->many, s->alike, s->unlike, s->counted};
+    SNOW_TRY(snow_histogram_sum(histogram, counts, 8));
     s->even = counts[0];
     s->all = counts[1];
     s->next = counts[2];
     s->apart = counts[3];
     s->many = counts[4];
+    s->alike = counts[5];
+    s->unlike = counts[6];
+    s->counted = counts[7];
     if (!s->compares && !s->many)
         SNOW_TRY(join_values(histogram->comm, s));
     return join_labels(histogram->comm, histogram->volume->context, s);
@@ -235,6 +254,16 @@ static bool is_few(const label_scan *s) {
     return !s->many && s->count <= FEW &&
            (double)s->even >= EVEN * (double)s->all &&
            (s->count <= STEPS || (double)s->next < STEPPED * (double)s->apart);
+}
+
+/* The same of an overlay, and of two values. */
+static bool is_mask(const snow_histogram *histogram, const snow_look *look,
+                    const label_scan *s) {
+    if (s->many || s->count > FEW || !(histogram->min >= 0))
+        return false;
+    return s->count <= (look->overlay ? OVERLAID : MASK) ||
+           (look->overlay && s->unlike <= s->alike &&
+            (!s->unlike || 2 * s->counted < s->unlike));
 }
 
 /* A file's labels are known after a pass. */
@@ -343,8 +372,19 @@ static void place_points(snow_transfer_builder *b) {
     b->high = labels[b->label_count - 1].value;
 }
 
+static const char *reason_of(const label_scan *s, const snow_look *look,
+                             bool asked) {
+    if (asked || s->labelled)
+        return s->labelled ? "of the file" : "labels";
+    if (look->overlay)
+        return "few whole numbers; --overlay-look hot shows values";
+    return is_few(s) ? "few whole numbers, in regions"
+                     : "two whole numbers; --preset linear shows values";
+}
+
 static snow_status build(snow_context *context, const label_scan *s,
-                         const snow_look *look, snow_transfer_builder *b) {
+                         const snow_look *look, bool asked,
+                         snow_transfer_builder *b) {
     SNOW_TRY(SNOW_RESERVE(context, b->labels, 0, s->count));
     b->label_count = s->count;
     for (size_t n = 0; n < s->count; n++) {
@@ -357,9 +397,7 @@ static snow_status build(snow_context *context, const label_scan *s,
     place_points(b);
     b->name = "labels";
     b->preset = "labels";
-    b->reason = s->labelled ? "of the file"
-                : is_few(s) ? "few whole numbers, in regions"
-                            : "labels";
+    b->reason = reason_of(s, look, asked);
     return SNOW_STATUS_OK;
 }
 
@@ -383,7 +421,7 @@ snow_status snow_transfer_builder_labels(const snow_histogram *histogram,
     snow_context *context = volume->context;
     const bool integers = volume->info.type < SNOW_TYPE_FLOAT32;
     const bool whole = integers || !histogram->fractions;
-    if (!integers && !volume->info.whole && !asked &&
+    if (!integers && !volume->info.whole && !asked && !look->overlay &&
         (!volume->labelled || histogram->comm))
         return SNOW_STATUS_OK;
     label_scan *s = snow_allocate_clear(context, sizeof *s);
@@ -395,9 +433,11 @@ snow_status snow_transfer_builder_labels(const snow_histogram *histogram,
     if (status == SNOW_STATUS_OK) {
         bool can = whole && !s->many && s->count >= 2;
         bool measured =
+            volume->info.estimate ||
             snow_are_hounsfield(&volume->info, histogram->min, histogram->max);
-        if (can && (asked || s->labelled || (is_few(s) && !measured)))
-            status = build(context, s, look, builder);
+        bool found = is_few(s) || is_mask(histogram, look, s);
+        if (can && (asked || s->labelled || (found && !measured)))
+            status = build(context, s, look, asked, builder);
         else if (asked)
             status = fail_labels(volume, s, !whole);
     }

@@ -135,6 +135,17 @@ snow_status snow_transfer_builder_labels(const snow_histogram *histogram,
                                          const snow_look *look, bool asked,
                                          snow_transfer_builder *builder);
 
+/* What differs in the automatic look of an overlay of values: statistics of
+ * both signs, or the colours of hot.  Errors: those of snow_count_bins. */
+snow_status snow_transfer_builder_overlay(const snow_histogram *histogram,
+                                          const snow_look *look,
+                                          snow_transfer_builder *builder);
+
+/* Appends a point; its value is raised to that of the point before it, if
+ * lower. */
+void snow_transfer_builder_add_opacity(snow_transfer_builder *builder,
+                                       double value, double opacity);
+
 /* Builds from points; if they lack colours or opacities, the builder's stay.
  * Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_transfer_builder_points(const snow_look *points,
@@ -168,6 +179,9 @@ void snow_full_range(const snow_histogram *histogram, double *low,
  * the volume, but opacities perhaps, and gradients'. */
 bool snow_look_is_of_labels(const snow_look *look);
 bool snow_look_is_free(const snow_look *look);
+
+/* Returns whether it gives neither a range nor a scale. */
+bool snow_look_is_unranged(const snow_look *look);
 
 /* Returns whether labels can have what it asks for: opacities, those of
  * gradients, and a list of colours. */

@@ -128,4 +128,56 @@ turn[1:3, 3] = -nibabel.load("b.mgh").affine[1:3, 3]
 oracle.expect("b.mgh", oracle.sample("f4", (50, 1, 1)).T, turn)
 oracle.says("no place", "b.mgh", "no valid place")
 oracle.refuse_cut("b.mgh", (0, 100, 284, 300), "cut.mgh")
+
+# --- overlays: labels, counts and statistics ------------------------------------
+
+at = np.indices((40, 40, 40)) - 20.0
+far = np.sqrt((at ** 2).sum(0))
+
+
+def overlaid(name, voxels, intent, wanted):
+    image = nibabel.Nifti1Image(voxels, np.eye(4))
+    image.header["intent_code"] = intent
+    nibabel.save(image, "over.nii")
+    done = oracle.tool("render", "body.nii", "--overlay", "over.nii", "-y", "-s",
+                       "32", "-o", "over.png")
+    said = done.stderr.partition("overlay over.nii: ")[2].partition("\n")[0]
+    oracle.checked += 1
+    if done.returncode or not said.startswith(wanted):
+        oracle.fail(name, f"exit {done.returncode}, {said!r}, not {wanted!r}")
+    return said
+
+
+nibabel.save(nibabel.Nifti1Image((far < 18).astype("i2") * 100, np.eye(4)),
+             "body.nii")
+NORMAL = np.random.default_rng(7).standard_normal(far.shape)
+BUMPS = 3 * np.sin(at[0] / 3) * np.sin(at[1] / 4)
+spots = np.zeros(far.shape, "u1")
+spots[5:35:3, 5:35:3, 20] = np.arange(100).reshape(10, 10) % 20 + 1
+for name, voxels, intent, wanted in (
+        ("a voxel", (far < 1).astype("u1"), 0, "labels 0..1"),
+        ("a voxel of floats", (far < 1).astype("f4"), 0, "labels 0..1"),
+        ("five values", (NORMAL > 2) * np.uint8(at[0] % 4 + 1), 0, "labels 0..4"),
+        ("specks of 20", spots, 0, "labels 0..20"),
+        ("counts", np.clip(BUMPS * 3, 0, None).astype("u1"), 0, "hot"),
+        ("noise", (NORMAL * 9).clip(0, 40).astype("u1"), 0, "hot"),
+        ("regions", np.repeat(np.arange(0, 40, 2), 2).astype("u1")[:, None, None] *
+         np.ones((1, 40, 40), "u1"), 0, "labels 0..38"),
+        ("a statistic", (far < 9) * np.uint8(3), 5, "hot"),
+        ("an estimate", (far < 9) * np.uint8(3), 1001, "hot"),
+        ("labels by intent", np.clip(BUMPS * 3, 0, None).astype("u1"), 1002,
+         "labels")):
+    overlaid(name, voxels, intent, wanted)
+# Both signs: the percentile of numpy, within a bin of the 2049 that are counted.
+values = np.where(far < 17, NORMAL + BUMPS, 0).astype("f4")
+for intent, voxels in ((0, values), (5, values), (4, values ** 2)):
+    wanted = "seismic" if voxels.min() < 0 else "hot"
+    said = overlaid(f"intent {intent}", voxels, intent, wanted)
+    start = float(said.partition("; opacity")[2].split(" 0 at ")[-1].split(",")[0])
+    other = np.abs(voxels[voxels != 0])
+    oracle.checked += 1
+    if abs(start - np.percentile(other, 95)) > 2.1 * other.max() / 2049 or \
+            "from percentile 95 of" not in said:
+        oracle.fail(f"intent {intent}", f"{said!r}: not from "
+                    f"{np.percentile(other, 95)} on")
 oracle.finish()

@@ -189,7 +189,7 @@ static void what_is_not_labelled_is_hidden(void **state) {
 }
 
 /* Single voxels in a background, and a coarse heap, are no regions; balls of
- * few voxels are. */
+ * few voxels are, and so is all that has two values, unless it is measured. */
 static void few_values_alone_are_not(void **state) {
     static int32_t single[ALL], heap[ALL], balls[ALL];
     looks_fixture *f = *state;
@@ -205,6 +205,12 @@ static void few_values_alone_are_not(void **state) {
     assert_false(are_labels(f, wrapped(f, SNOW_TYPE_INT32, single)));
     assert_false(are_labels(f, wrapped(f, SNOW_TYPE_INT32, heap)));
     assert_true(are_labels(f, wrapped(f, SNOW_TYPE_INT32, balls)));
+    for (int at = 0; at < ALL; at++)
+        single[at] = single[at] ? 9 : 0;
+    snow_volume *mask = wrapped(f, SNOW_TYPE_INT32, single);
+    assert_true(are_labels(f, mask));
+    mask->info.estimate = true;
+    assert_false(are_labels(f, mask));
     /* Hounsfield units are measured, whatever their regions. */
     for (int medical = 0; medical < 2; medical++) {
         for (int at = 0; at < ALL && !medical; at++)

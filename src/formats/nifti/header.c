@@ -139,6 +139,9 @@ size_t nifti_header_size(const unsigned char *bytes, size_t size) {
     return 0;
 }
 
+#define INTENT_CORRELATION 2 /* the first of statistics, */
+#define INTENT_LOG10PVAL 24  /* and the last */
+#define INTENT_ESTIMATE 1001
 #define INTENT_LABEL 1002
 #define INTENT_DISPLACEMENT 1006
 #define INTENT_VECTOR 1007
@@ -183,6 +186,9 @@ static void read_fields(const unsigned char *bytes, nifti_header *header) {
     header->sform_code = (int)int_at(bytes + l->sform_code, l->code_bytes, big);
     const int64_t intent = int_at(bytes + l->intent, l->code_bytes, big);
     header->labels = intent == INTENT_LABEL;
+    header->estimate =
+        intent == INTENT_ESTIMATE ||
+        (intent >= INTENT_CORRELATION && intent <= INTENT_LOG10PVAL);
     header->vectors = intent == INTENT_DISPLACEMENT || intent == INTENT_VECTOR;
     header->colors = intent == INTENT_RGB || intent == INTENT_RGBA;
     /* FSL keeps components where time is. */

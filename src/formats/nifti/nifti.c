@@ -33,6 +33,7 @@ static void describe_volume(const nifti_header *header, snow_context *context,
     info->slope = header->slope;
     info->intercept = header->intercept;
     info->whole = header->labels;
+    info->estimate = header->estimate;
     nifti_geometry(context, header, options, info);
     sizes[0] = nifti_samples(header->datatype);
     if (isfinite(header->cal_min) && isfinite(header->cal_max) &&

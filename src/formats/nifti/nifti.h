@@ -24,9 +24,9 @@ typedef struct nifti_header {
     bool pair; /* the voxels are in a file of their own (.img) */
     int64_t dim[8];
     int datatype, bitpix;
-    bool labels, vectors; /* intent_code says that values are */
-    bool colors;          /* of single channels: red, green, blue */
-    double pixdim[8];     /* [0] is qfac, the sign of the third axis */
+    bool labels, vectors, estimate; /* intent_code says that values are */
+    bool colors;                    /* of single channels: red, green, blue */
+    double pixdim[8]; /* [0] is qfac, the sign of the third axis */
     uint64_t vox_offset;
     double slope, intercept;
     double cal_min, cal_max; /* data values; equal: none */
