@@ -42,7 +42,8 @@ typedef enum snow_range {
     SNOW_RANGE_FULL,        /* smallest to largest finite value */
     SNOW_RANGE_VALUES,      /* low to high, data values */
     SNOW_RANGE_PERCENTILES, /* low to high, percent of the finite voxels */
-    SNOW_RANGE_ROBUST       /* the file's window, else FULL but far outliers */
+    SNOW_RANGE_ROBUST,      /* the file's window, else FULL but far outliers */
+    SNOW_RANGE_SLICES       /* the same of one slice, or of several for all */
 } snow_range;
 
 typedef enum snow_domain { /* what the values of control points mean */

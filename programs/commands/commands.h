@@ -28,6 +28,9 @@ const char *name_of_input(const char *path);
 snow_volume_options data_options(const options *opts);
 snow_look look_options(const options *opts);
 
+/* Of projections and slices. */
+snow_range automatic_range(const options *opts);
+
 /* Opens the input volume: a file, phantom:NAME, or "-" for standard input.
  * Returns CONTINUE or an exit code. */
 int open_input(snow_context *context, const options *opts, const char *path,

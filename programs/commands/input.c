@@ -213,6 +213,11 @@ int check_look(const options *opts) {
     return CONTINUE;
 }
 
+snow_range automatic_range(const options *opts) {
+    return strcmp(opts->mode, "slice") == 0 ? SNOW_RANGE_SLICES
+                                            : SNOW_RANGE_ROBUST;
+}
+
 snow_look look_options(const options *opts) {
     const range_value range = options_range(opts);
     snow_look look = {.size = sizeof look,
@@ -230,7 +235,7 @@ snow_look look_options(const options *opts) {
     if (mode_is_projection(opts->mode) && !look.preset && !look.base) {
         look.preset = "linear";
         if (look.range == SNOW_RANGE_AUTO)
-            look.range = SNOW_RANGE_ROBUST;
+            look.range = automatic_range(opts);
     }
     if (opts->opacities.count) {
         look.opacities = opts->opacities.points;

@@ -142,7 +142,7 @@ static range_value range_of(const options *opts, const snow_channel *of,
         return options_range(opts);
     if (of->window[0] < of->window[1])
         return (range_value){SNOW_RANGE_VALUES, of->window[0], of->window[1]};
-    return (range_value){mode_is_projection(opts->mode) ? SNOW_RANGE_ROBUST
+    return (range_value){mode_is_projection(opts->mode) ? automatic_range(opts)
                                                         : SNOW_RANGE_AUTO,
                          0, 0};
 }
@@ -156,7 +156,8 @@ static snow_status hide_constant(snow_comm *comm, const snow_volume *volume,
     double low, high;
     snow_transfer_domain(*made, &low, &high);
     if (low < 0 || low > 0 ||
-        (look->range != SNOW_RANGE_AUTO && look->range != SNOW_RANGE_ROBUST))
+        (look->range != SNOW_RANGE_AUTO && look->range != SNOW_RANGE_ROBUST &&
+         look->range != SNOW_RANGE_SLICES))
         return SNOW_STATUS_OK;
     snow_status status =
         snow_ranks_new_transfer(comm, volume, &automatic, &seen);

@@ -325,7 +325,7 @@ class Channels:
         flat, said, pick = mode != "over", self._said(n), self.picks[n]
         kind, low, high = _parse_range(
             pick.range or (look.range if is_ranged(look) else said["window"]) or
-            ("robust" if flat else None))
+            (("slices" if mode == "slice" else "robust") if flat else None))
         fields: dict[str, Any] = {"low": low, "high": high,
                                   **_parse_scale(look.scale)}
         rgb, colors, opacities = _rgb(color), None, None
@@ -340,7 +340,7 @@ class Channels:
                 OWN if said["own"] else None
         made = volume._look(fields, kind, colors, opacities,
                             look.gradient_opacity)
-        if kind in ("auto", "robust") and made.domain[0] == 0 and \
+        if kind in ("auto", "robust", "slices") and made.domain[0] == 0 and \
                 "one value only" in volume._look({}, "auto", None, None,
                                                  None).description:
             # nothing to see, as in the command line

@@ -21,8 +21,8 @@ class Look:
     range         (low, high): the data values over which colours and opacities
                   are spread; "full": from the smallest to the largest;
                   "1%,99%": percentiles; "robust": the window that the file
-                  names, or all values but a few far off; None: chosen (`clim`
-                  is another name)
+                  names, or all values but a few far off; "slices": the same as
+                  for slices, up to 1 %; None: chosen (`clim` is another name)
     opacity       [(value, opacity), ...], opacities 0 to 1 at data values; they
                   replace those of a preset
     colors        [(value, (red, green, blue)), ...], 0 to 1
@@ -166,7 +166,7 @@ def _parse_range(given: Optional[Range]) -> tuple[str, float, float]:
     kind = "values"
     ends: Any = given
     if isinstance(given, str):
-        if given in ("auto", "full", "robust"):
+        if given in ("auto", "full", "robust", "slices"):
             return given, 0.0, 0.0
         words = [word.strip() for word in given.split(",")]
         if all(word.endswith("%") for word in words):

@@ -70,8 +70,8 @@ def _look_keys(look: Look) -> dict[str, Any]:
     if look.colors is not None:
         raise ValueError("a look with colors of its own is no recipe: name a "
                          "preset or a colormap")
-    if look.range == "robust":
-        raise ValueError("a range 'robust' is no recipe: give (low, high)")
+    if look.range in ("robust", "slices"):
+        raise ValueError(f"a range {look.range!r} is no recipe: give (low, high)")
     keys = {name: getattr(look, name) for name in LOOK}
     if look.range == "auto":
         keys["range"] = None

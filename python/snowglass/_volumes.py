@@ -762,7 +762,8 @@ def _chosen(look: Union[Look, str, None], mode: str) -> Look:
         chosen = dataclasses.replace(chosen, preset="linear")
         # Over the file's window, or all values but a few far off.
         if not is_ranged(chosen):
-            chosen = dataclasses.replace(chosen, range="robust")
+            chosen = dataclasses.replace(
+                chosen, range="slices" if mode == "slice" else "robust")
     return chosen
 
 

@@ -91,7 +91,7 @@ void values_ends(drawing *d, double ends[2]) {
 
 void values_window(drawing *d, double window[2]) {
     const snow_look look = {
-        .size = sizeof look, .preset = "linear", .range = SNOW_RANGE_ROBUST};
+        .size = sizeof look, .preset = "linear", .range = SNOW_RANGE_SLICES};
     snow_transfer *transfer = NULL;
     ranks_tell(d, RANKS_WINDOW, NULL);
     window[0] = 0;

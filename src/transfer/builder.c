@@ -58,26 +58,75 @@ snow_status snow_window_of(const snow_histogram *histogram,
     return SNOW_STATUS_OK;
 }
 
-/* So much is left out at an end where that halves the range or more. */
+/* What may be left out at either end of a range, and how many times smaller
+ * that has to make it: three values or a ten-thousandth; of slices, where a
+ * patch of broken pixels is no object, also a hundredth. */
 #define FEW 0.0001
+#define FEW_LEAST 3.0
+#define FEW_PAY 4.0
+#define MANY 0.01
+#define MANY_PAY 1000.0
 
-snow_status snow_robust_range(const snow_histogram *histogram, double *low,
-                              double *high, snow_transfer_builder *builder) {
-    const double shares[2] = {FEW, 1 - FEW}, full[2] = {*low, *high};
-    const double half = (full[1] - full[0]) / 2;
-    double ends[2];
+/* Takes the upper end, the lower one, or both, where that pays.  Halves are
+ * compared, since the whole may be more than a double holds. */
+static bool shrink(double range[2], const double ends[2], double pays) {
+    const double half = range[1] / 2 - range[0] / 2;
+    if (!(ends[0] < ends[1]))
+        return false;
+    const bool high = half >= pays * (ends[1] / 2 - range[0] / 2);
+    if (high)
+        range[1] = ends[1];
+    const bool low =
+        range[1] / 2 - range[0] / 2 >= pays * (range[1] / 2 - ends[0] / 2);
+    if (low)
+        range[0] = ends[0];
+    if (high || low || half < pays * (ends[1] / 2 - ends[0] / 2))
+        return high || low;
+    range[0] = ends[0];
+    range[1] = ends[1];
+    return true;
+}
+
+/* The ends without so many values at either. */
+static snow_status ends_without(const snow_histogram *histogram, double count,
+                                double ends[2]) {
+    const double all = (double)histogram->finite;
+    const double share = (floor(count) + 0.5) / all;
+    const double shares[2] = {share, 1 - share};
+    return snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, shares, 2, ends);
+}
+
+/* Leaves out at most so many values at either end, and no more than pay: where
+ * all of them would, 1, 2, 4 and so on are tried. */
+static snow_status leave_out(const snow_histogram *histogram, double most,
+                             double pays, double range[2]) {
+    double trial[2] = {range[0], range[1]}, all[2], ends[2];
+    SNOW_TRY(ends_without(histogram, most, all));
+    if (!shrink(trial, all, pays))
+        return SNOW_STATUS_OK;
+    for (double count = 1; count < most; count *= 2) {
+        SNOW_TRY(ends_without(histogram, count, ends));
+        shrink(range, ends, pays);
+    }
+    shrink(range, all, pays);
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_robust_range(const snow_histogram *histogram, bool slices,
+                              double *low, double *high,
+                              snow_transfer_builder *builder) {
+    const double full[2] = {*low, *high}, count = (double)histogram->finite;
+    double range[2] = {*low, *high};
     bool is;
     SNOW_TRY(snow_window_of(histogram, builder, low, high, &is));
     if (is || histogram->scale.log || !histogram->finite)
         return SNOW_STATUS_OK;
     SNOW_TRY(
-        snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, shares, 2, ends));
-    if (!(ends[0] < ends[1]))
-        return SNOW_STATUS_OK;
-    if (ends[1] - full[0] < half)
-        *high = ends[1];
-    if (full[1] - ends[0] < half)
-        *low = ends[0];
+        leave_out(histogram, fmax(FEW_LEAST, FEW * count), FEW_PAY, range));
+    if (slices)
+        SNOW_TRY(leave_out(histogram, MANY * count, MANY_PAY, range));
+    *low = range[0];
+    *high = range[1];
     if (*low > full[0] || *high < full[1])
         snow_text_print(builder->range_note, sizeof builder->range_note,
                         "; few values outside, the data are %.5g..%.5g",

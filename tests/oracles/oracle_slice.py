@@ -256,8 +256,31 @@ big = np.kron(steps, np.ones((4, 4)))
 same_colors("labels, enlarged, have no values in between",
             ("--tf", "labels.csv", "-s", "48x56"), big)
 
+# A window leaves out the fewest values at an end, at most three or 0.01 %, if it
+# shrinks four times, and at most 1 % if it shrinks a thousand times.
+noise = random.normal(100, 20, 128 * 128)
+for name, low, high in (("a hot pixel", [], [1e6]), ("none", [], []),
+                        ("three of them", [], [1e6, 9e5, 8e5]),
+                        ("two of two kinds", [], [1e6, 3e3]),
+                        ("a cold and a hot one", [-1e6], [1e6]),
+                        ("1 % of them", [], 1e6 + np.arange(163))):
+    found = np.sort(np.concatenate([low, noise[:16384 - len(low) - len(high)],
+                                     high])).astype(np.float32)
+    order = random.permutation(16384)
+    path, flat = "hot.npy", found[order].reshape(128, 128)[::-1].astype(float)
+    np.save(path, found[order].reshape(1, 128, 128))
+    low, high = found[len(low)], found[len(found) - 1 - len(high)]
+    same_colors(name, (), ramp(float(low), float(high)))
+for name, high in (("four of them", [400] * 4), ("2 %", [1e6] * 330),
+                   ("a bright one", [600])):
+    found = np.concatenate([noise[:16384 - len(high)], high])
+    path, flat = "hot.npy", found.reshape(128, 128)[::-1].astype(np.float32)
+    np.save(path, found.reshape(1, 128, 128).astype(np.float32))
+    same_colors(f"not {name}", (), ramp(flat.min(), flat.max()))
+
 # An overlay: labels half, or as asked, over the grey slice, by their nearest
 # voxels; values in their colours, with opacities linear between the points.
+path, flat = "b.nii", native
 grey = ramp(-1500, 2500)
 cells = np.zeros(VOXELS.shape, np.uint8)
 cells[2:7, 3:9, 4:8] = 1
