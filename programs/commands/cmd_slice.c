@@ -1,290 +1,24 @@
-/* cmd_slice.c - the verb slice: one slice of a volume as a picture.
+/* cmd_slice.c - the verb slice: one slice of a volume as a picture, several in
+ * one, or a series of them.
  *
  * The header says where the slice lies, and a crop has no more than it read. So
  * a slice of a volume larger than memory takes the memory of a slice. */
 #include "commands/commands.h"
 #include "options/config.h"
 #include "picture/annotations.h"
-#include "picture/channels.h"
-#include "picture/layers.h"
 #include "picture/outputs.h"
-#include "picture/render_stats.h"
 #include "picture/show.h"
 #include "picture/warnings.h"
 #include "run/interrupt.h"
 #include "run/log.h"
 #include "run/start.h"
+#include "slice/slice.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Degrees between a slice and the plane it stands for that are worth a note. */
-#define OBLIQUE 1.0
-
-typedef struct slice_work {
-    options opts; /* in a mode of its own, cropped to the slice */
-    snow_context *context;
-    const char *path;
-    snow_volume_info whole; /* what the slices are counted in */
-    snow_view view;
-    int axis, world;      /* of the grid, and of the world beside it */
-    int64_t index;        /* in the whole */
-    double position;      /* of its middle, in the world */
-    snow_volume *volume;  /* the slice */
-    char *cut;            /* its voxels, if all came through a pipe */
-    channel_set channels; /* of colours, the first of which it is */
-    snow_transfer *transfer;
-    layers layers; /* that lie over it */
-    snow_image *image;
-    snow_settings settings;
-    render_times times;
-    double begin, frame;
-} slice_work;
-
-/* --- which slice ---------------------------------------------------------- */
-
-static const char *axis_name(const slice_work *w) {
-    return w->opts.axis ? w->opts.axis : "axial";
-}
-
-static const char *unit_of(const snow_volume_info *info) {
-    return *info->unit ? info->unit : "mm";
-}
-
-/* The coordinate of a slice's middle along the axis of the world that it lies
- * across. */
-static double position_of(const slice_work *w, double index) {
-    const snow_volume_info *info = &w->whole;
-    double at = info->matrix[w->world][3];
-    for (int i = 0; i < 3; i++)
-        at += info->matrix[w->world][i] *
-              (i == w->axis ? index : ((double)info->dims[i] - 1) / 2);
-    return at;
-}
-
-/* A number, or a position with the unit of the world behind it. */
-static int find_place(slice_work *w) {
-    const char *at = w->opts.at, *unit = unit_of(&w->whole);
-    double last = (double)w->whole.dims[w->axis] - 1;
-    char *end = NULL;
-    double index = at ? strtod(at, &end) : floor((last + 1) / 2);
-    if (at && end > at && strcmp(end, unit) == 0)
-        index = rint((index - position_of(w, 0)) /
-                     w->whole.matrix[w->world][w->axis]);
-    else if (at && (end == at || *end))
-        index = NAN;
-    if (!(index >= 0 && index <= last) || index < floor(index) ||
-        index > floor(index))
-        return fail_usage("--at: '%s' is no slice across %s: must be 0 to %g, "
-                          "or a position from %g%s to %g%s",
-                          at, axis_name(w), last, position_of(w, 0), unit,
-                          position_of(w, last), unit);
-    w->index = (int64_t)index;
-    w->position = position_of(w, index);
-    return CONTINUE;
-}
-
-/* Of a volume that is a single slice, the cut that shows its face. */
-static void choose_axis(slice_work *w) {
-    static const char *const names[] = {"axial", "coronal", "sagittal"};
-    const int64_t *dims = w->whole.dims;
-    if (w->opts.axis || (dims[0] == 1) + (dims[1] == 1) + (dims[2] == 1) != 1)
-        return;
-    for (int n = 0; n < 3 && !w->opts.axis; n++) {
-        snow_view view = w->view;
-        int axis;
-        if (!snow_slice_view(w->context, &w->whole, names[n], &view, &axis) &&
-            dims[axis] == 1)
-            w->opts.axis = names[n];
-    }
-}
-
-static int find_slice(slice_work *w) {
-    snow_view_init(&w->view);
-    w->view.width = (int)w->opts.size[0];
-    w->view.height = (int)w->opts.size[1];
-    choose_axis(w);
-    snow_status status = snow_slice_view(w->context, &w->whole, axis_name(w),
-                                         &w->view, &w->axis);
-    if (status != SNOW_STATUS_OK)
-        return fail_status(w->context, status);
-    /* The nearest axis of the world, and how far the slice's normal is from
-     * it. */
-    const double *normal = w->view.back;
-    w->world = 0;
-    for (int i = 1; i < 3; i++)
-        if (fabs(normal[i]) > fabs(normal[w->world]) + 1e-6)
-            w->world = i;
-    double angle = acos(fmin(fabs(normal[w->world]), 1)) * 180 / acos(-1);
-    if (angle > OBLIQUE && strlen(axis_name(w)) > 1 && w->opts.verbosity >= 0)
-        say("note: slices of the grid are %.0f degrees off %s: this is the "
-            "nearest of them, as it is",
-            angle, axis_name(w));
-    return find_place(w);
-}
-
-/* Files of numbers get the values. */
-static bool has_colors(const slice_work *w) {
-    return snow_image_format_bits(w->opts.output) > 0 ||
-           strcmp(w->opts.output, "-") == 0;
-}
-
-/* --- reading -------------------------------------------------------------- */
-
-static void crop_to_slice(slice_work *w) {
-    int64_t *crop = w->opts.crop[w->axis];
-    crop[0] += w->index;
-    crop[1] = crop[0] + 1;
-}
-
-/* The slice in the place of the whole, as a crop would have read it. */
-static int cut_slice(slice_work *w) {
-    snow_volume_info info = w->whole;
-    snow_volume *slice = NULL;
-    const int64_t *dims = w->whole.dims;
-    const size_t size = snow_type_size(info.type);
-    const size_t steps[3] = {size, size * (size_t)dims[0],
-                             size * (size_t)(dims[0] * dims[1])};
-    const int u = w->axis == 0, v = w->axis == 2 ? 1 : 2;
-    info.dims[w->axis] = 1;
-    for (int row = 0; row < 3; row++)
-        info.matrix[row][3] += info.matrix[row][w->axis] * (double)w->index;
-    w->cut = malloc(size * (size_t)(dims[u] * dims[v]));
-    if (!w->cut)
-        return fail_memory("out of memory for the slice; close other programs");
-    char *out = w->cut;
-    const char *from = snow_volume_voxels(w->volume);
-    from += (size_t)w->index * steps[w->axis];
-    for (int64_t b = 0; b < dims[v]; b++)
-        for (int64_t a = 0; a < dims[u]; a++, out += size)
-            memcpy(out, from + (size_t)a * steps[u] + (size_t)b * steps[v],
-                   size);
-    snow_status status = snow_volume_wrap(w->context, &info, w->cut, &slice);
-    if (status != SNOW_STATUS_OK)
-        return fail_status(w->context, status);
-    snow_volume_close(w->volume);
-    w->volume = slice;
-    if (!options_given(&w->opts, "crop"))
-        w->layers.whole = &w->whole;
-    crop_to_slice(w);
-    return CONTINUE;
-}
-
-static int open_piped(slice_work *w) {
-    w->opts.mixes = true;
-    int done = open_input(w->context, &w->opts, w->path, &w->volume);
-    if (done != CONTINUE)
-        return done;
-    w->whole = *snow_volume_get_info(w->volume);
-    done = channels_choose(&w->opts, &w->whole, channels_hinder(&w->opts),
-                           &w->channels);
-    if (done == CONTINUE)
-        done = find_slice(w);
-    return done == CONTINUE ? cut_slice(w) : done;
-}
-
-static int open_slice(slice_work *w) {
-    /* Standard input can be read only once, so all of it is. */
-    if (strcmp(w->path, "-") == 0)
-        return open_piped(w);
-    snow_volume_options data = data_options(&w->opts);
-    snow_volume_info_init(&w->whole);
-    show_warnings(&w->opts, w->context, false); /* they come again */
-    int done = check_status(
-        w->context, snow_volume_inspect(w->context, w->path, &data, &w->whole));
-    show_warnings(&w->opts, w->context, true);
-    if (done == CONTINUE)
-        done = find_slice(w);
-    snow_volume_info slice = w->whole;
-    slice.dims[w->axis] = 1;
-    if (done == CONTINUE)
-        done = channels_choose(&w->opts, &slice,
-                               has_colors(w) || w->opts.show
-                                   ? channels_hinder(&w->opts)
-                                   : "a file of numbers has one",
-                               &w->channels);
-    if (done != CONTINUE)
-        return done;
-    crop_to_slice(w);
-    w->opts.mixes = true;
-    if (w->channels.list.count)
-        w->opts.channel = w->channels.list.picks[0].index;
-    return open_input(w->context, &w->opts, w->path, &w->volume);
-}
-
-/* --- the picture ---------------------------------------------------------- */
-
-/* The view is that of the voxels that were read, since its zoom counts in their
- * size. */
-static snow_status draw(slice_work *w) {
-    static const char *const axes[] = {"x", "y", "z"};
-    const snow_volume_info *info = snow_volume_get_info(w->volume);
-    int axis;
-    double begin = seconds_now();
-    snow_status status = SNOW_STATUS_OK;
-    w->view.strip = 0;
-    for (int n = 0; n < 2 && status == SNOW_STATUS_OK; n++) {
-        if (n) /* a strip of the picture, whose size is known now */
-            w->view.strip = annotations_strip(
-                &(picture_annotations){&w->opts,
-                                       *info,
-                                       w->view,
-                                       w->transfer,
-                                       {0, 0},
-                                       &w->channels,
-                                       layers_legend(&w->layers, false)});
-        w->view.width = (int)w->opts.size[0];
-        w->view.height = (int)w->opts.size[1];
-        status =
-            snow_slice_view(w->context, info, axes[w->axis], &w->view, &axis);
-        if (!w->transfer)
-            break;
-    }
-    if (status == SNOW_STATUS_OK)
-        status = snow_slice_render(w->volume, 0, w->transfer, &w->view,
-                                   &w->settings, &w->image);
-    if (status == SNOW_STATUS_OK && w->transfer && w->channels.list.count)
-        status = channels_add_slices(&w->channels, w->context, 0, &w->view,
-                                     &w->settings, &w->image);
-    if (status == SNOW_STATUS_OK)
-        status = layers_lay_slice(&w->opts, &w->layers, 0, &w->view,
-                                  &w->settings, w->context, &w->image);
-    w->frame = seconds_now() - begin;
-    return status;
-}
-
-/* Labels are drawn as such where nothing else is asked, as in a picture. */
-static int open_colors(slice_work *w) {
-    static options automatic; /* large */
-    const options *opts = &w->opts;
-    automatic = *opts;
-    automatic.mode = "over";
-    bool asked = opts->preset || opts->tf || opts->colormap ||
-                 opts->scale.log || opts->scale.symlog != 0 ||
-                 options_range(opts).kind != SNOW_RANGE_AUTO;
-    int done = CONTINUE;
-    if (w->channels.list.count) {
-        snow_status status =
-            channels_look(NULL, opts, &w->whole, &w->channels.list.picks[0],
-                          w->volume, &w->transfer);
-        channels_close_volumes(&w->channels);
-        if (status == SNOW_STATUS_OK)
-            status = channels_open(opts, w->context, w->path, false, 0,
-                                   &w->channels);
-        return check_volume(w->context, status, name_of_input(w->path));
-    }
-    if (!asked)
-        done = open_look(w->context, &automatic, w->volume, &w->transfer);
-    if (done != CONTINUE ||
-        (w->transfer && snow_transfer_label(w->transfer, 0)))
-        return done;
-    snow_transfer_free(w->transfer);
-    w->transfer = NULL;
-    return open_look(w->context, opts, w->volume, &w->transfer);
-}
 
 /* Channels that nobody asked for, and that do not fit together, give way to the
  * first one. */
@@ -300,81 +34,68 @@ static int draw_first(slice_work *w) {
     w->opts.channel = 0;
     int done = open_input(w->context, &w->opts, w->path, &w->volume);
     if (done == CONTINUE)
-        done = open_colors(w);
+        done = slice_open_colors(w);
     if (done != CONTINUE)
         return done;
-    return check_volume(w->context, draw(w), name_of_input(w->path));
+    return check_volume(w->context, slice_draw(w), name_of_input(w->path));
 }
 
 static int make_picture(slice_work *w) {
-    const options *opts = &w->opts;
-    double begin = seconds_now();
-    progress_begin(opts, "reading");
-    int done = open_slice(w);
-    progress_end(opts);
-    w->times.read = seconds_now() - begin;
-    if (done == CONTINUE && has_colors(w))
-        done = open_colors(w);
+    int done = slice_inspect(w);
     if (done == CONTINUE)
-        done = layers_open(opts, w->context, w->volume, &w->layers);
-    w->times.look = seconds_now() - begin - w->times.read;
+        done = slice_read(w);
     if (done != CONTINUE)
         return done;
-    snow_status status = draw(w);
+    snow_status status = slice_draw(w);
     if (status == SNOW_STATUS_NO_MEMORY && w->channels.list.count > 1 &&
-        !opts->channels.count)
+        !w->opts.channels.count)
         return draw_first(w);
     return check_volume(w->context, status, name_of_input(w->path));
 }
 
-/* The description of a look without its opacities, which a slice ignores. */
-static void describe_colors(const slice_work *w, char *out, size_t size) {
-    const char *text =
-        w->transfer ? snow_transfer_description(w->transfer) : "data values";
-    const char *opacity = strstr(text, "; opacity"), *reason = NULL;
-    for (const char *at = opacity; at && (at = strstr(at, " ("));)
-        reason = at++;
-    snprintf(out, size, "%.*s%s",
-             opacity ? (int)(opacity - text) : (int)strlen(text), text,
-             reason ? reason : "");
+/* "axial slice 15 of 0 to 29, at 3.8mm". */
+static void describe_place(const slice_work *w, char *out, size_t size) {
+    const snow_slice_place *first = &w->places[0];
+    const snow_slice_place *last = &w->places[w->count - 1];
+    const char *axis = slice_axis_name(w), *unit = slice_unit(&w->whole);
+    if (w->kind == SLICE_ORTHO)
+        snprintf(out, size,
+                 "axial slice %" PRId64 ", coronal %" PRId64
+                 ", sagittal %" PRId64 ", at %g,%g,%g%s",
+                 first->index, w->places[1].index, last->index, w->point[0],
+                 w->point[1], w->point[2], unit);
+    else if (w->kind == SLICE_GRID)
+        snprintf(out, size,
+                 "%" PRId64 " %s slices from %" PRId64 " to %" PRId64
+                 " of 0 to %" PRId64,
+                 w->count, axis, first->index, last->index,
+                 w->whole.dims[w->axis] - 1);
+    else
+        snprintf(out, size, "%s slice %" PRId64 " of 0 to %" PRId64 ", at %g%s",
+                 axis, first->index, w->whole.dims[w->axis] - 1,
+                 slice_position(w, (double)first->index), unit);
 }
 
 static void report(const slice_work *w) {
-    char volume[256], colors[512];
+    char volume[256], place[256], colors[512];
     describe_volume(&w->whole, volume, sizeof volume);
-    describe_colors(w, colors, sizeof colors);
+    describe_place(w, place, sizeof place);
+    slice_describe_colors(w, colors, sizeof colors);
     config_note_slice(&w->opts, w->channels.list.count ? NULL : w->transfer,
-                      axis_name(w), w->index);
-    if (w->transfer && w->channels.list.count) {
-        channels_describe(&w->channels, colors, sizeof colors);
+                      w->kind == SLICE_ORTHO ? NULL : slice_axis_name(w),
+                      w->kind == SLICE_ONE ? w->places[0].index : -1);
+    if (w->transfer && w->channels.list.count)
         config_note_channels(&w->opts, &w->channels.list, SNOW_SHADE_NONE,
                              NULL);
-    }
     annotations_report(&w->opts);
     if (w->opts.verbosity < 0)
         return;
-    say("%s: %s; %s slice %" PRId64 " of 0 to %" PRId64 ", at %g%s; %s; "
-        "%dx%d pixels%s%s",
-        name_of_input(w->path), volume, axis_name(w), w->index,
-        w->whole.dims[w->axis] - 1, w->position, unit_of(&w->whole), colors,
-        w->view.width, w->view.height, w->opts.named ? "; to " : "",
+    say("%s: %s; %s; %s; %dx%d pixels%s%s", name_of_input(w->path), volume,
+        place, colors, w->size[0], w->size[1], w->opts.named ? "; to " : "",
         w->opts.named ? w->opts.output : "");
     if (picture_is_empty(w->image))
         say("note: the picture is empty: the slice has no finite value, or "
             "with --scale log none above 0; give another --at");
-}
-
-/* Letters stay at the edges: a slice fills its picture. */
-static snow_status make_overlay(slice_work *w, snow_overlay **out) {
-    picture_annotations annotations = {&w->opts,
-                                       *snow_volume_get_info(w->volume),
-                                       w->view,
-                                       w->transfer,
-                                       {0, 0},
-                                       w->transfer ? &w->channels : NULL,
-                                       layers_legend(&w->layers, false)};
-    annotations_find_unit(&w->opts, w->volume, false, &annotations.info);
-    return annotations_make(&annotations, 0, -1, NULL, w->context, out);
 }
 
 /* Shows what a PNG would: where values are written, the same slice in
@@ -383,23 +104,23 @@ static int show_slice(const slice_work *w) {
     slice_work shown = *w;
     snow_overlay *overlay = NULL;
     int done = CONTINUE;
-    if (!has_colors(w)) {
+    if (!slice_has_colors(w)) {
         shown.transfer = NULL;
         shown.image = NULL;
-        done = open_colors(&shown);
+        done = slice_open_colors(&shown);
         if (done == CONTINUE)
-            done = check_status(w->context, draw(&shown));
+            done = check_status(w->context, slice_draw(&shown));
     }
     shown.opts.output = "-";
     snow_image_options form = picture_form(&shown.opts);
     if (done == CONTINUE) {
-        snow_status status = make_overlay(&shown, &overlay);
+        snow_status status = slice_make_overlay(&shown, &overlay);
         form.overlay = overlay;
         done = status == SNOW_STATUS_OK ? show_picture(shown.image, &form)
                                         : fail_status(w->context, status);
     }
     snow_overlay_free(overlay);
-    if (!has_colors(w)) {
+    if (!slice_has_colors(w)) {
         snow_image_free(shown.image);
         snow_transfer_free(shown.transfer);
     }
@@ -414,7 +135,7 @@ static int write_slice(slice_work *w) {
     bool shown = opts->show && strcmp(opts->output, "-") == 0;
     if (!is_special(opts->output))
         interrupt_hold();
-    snow_status status = make_overlay(w, &overlay);
+    snow_status status = slice_make_overlay(w, &overlay);
     form.overlay = overlay;
     progress_begin(opts, "writing");
     if (status == SNOW_STATUS_OK && !shown)
@@ -429,6 +150,23 @@ static int write_slice(slice_work *w) {
 }
 
 /* --- figures -------------------------------------------------------------- */
+
+static json_t *figures_of_place(const slice_work *w) {
+    const char *axis = slice_axis_name(w), *unit = slice_unit(&w->whole);
+    if (w->kind == SLICE_ONE)
+        return json_pack("{s:s,s:I,s:f,s:s}", "axis", axis, "index",
+                         (json_int_t)w->places[0].index, "position",
+                         slice_position(w, (double)w->places[0].index), "unit",
+                         unit);
+    json_t *indices = json_array();
+    for (int64_t n = 0; n < w->count; n++)
+        json_array_append_new(indices,
+                              json_integer((json_int_t)w->places[n].index));
+    return w->kind == SLICE_GRID
+               ? json_pack("{s:s,s:o}", "axis", axis, "indices", indices)
+               : json_pack("{s:o,s:[f,f,f],s:s}", "indices", indices, "point",
+                           w->point[0], w->point[1], w->point[2], "unit", unit);
+}
 
 static json_t *figures(const slice_work *w) {
     snow_stats stats = {.size = sizeof stats,
@@ -447,10 +185,7 @@ static json_t *figures(const slice_work *w) {
     json_t *tree = stats_json(&made);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         json_object_del(tree, others[i]);
-    json_object_set_new(tree, "slice",
-                        json_pack("{s:s,s:I,s:f,s:s}", "axis", axis_name(w),
-                                  "index", (json_int_t)w->index, "position",
-                                  w->position, "unit", unit_of(&w->whole)));
+    json_object_set_new(tree, "slice", figures_of_place(w));
     json_object_set_new(
         json_object_get(tree, "bytes"), "file",
         json_integer((json_int_t)snow_context_bytes_read(w->context)));
@@ -471,23 +206,30 @@ static int report_figures(slice_work *w) {
 
 /* --- the stages ----------------------------------------------------------- */
 
-static int check_request(slice_work *w) {
+/* What no slice can be drawn with. */
+static int check_slices(const slice_work *w) {
     const options *opts = &w->opts;
-    int done = check_picture(opts);
-    if (done == CONTINUE && opts->footprint)
-        done = fail_usage("--kernel: a slice has no support; give %s alone",
+    if (opts->footprint)
+        return fail_usage("--kernel: a slice has no support; give %s alone",
                           opts->kernel);
-    if (done == CONTINUE && (strcmp(opts->kernel, "gauss") == 0 ||
-                             strcmp(opts->kernel, "bspline") == 0))
-        done = fail_usage("--kernel: %s cannot draw a slice; use tent, or box "
+    if (strcmp(opts->kernel, "gauss") == 0 ||
+        strcmp(opts->kernel, "bspline") == 0)
+        return fail_usage("--kernel: %s cannot draw a slice; use tent, or box "
                           "for the nearest voxel",
                           opts->kernel);
-    if (done == CONTINUE)
-        done = layers_check(opts);
-    if (done == CONTINUE && opts->overlay && !has_colors(w))
-        done = fail_usage("%s: a file of numbers holds one volume's values, "
+    if (opts->overlay && !slice_has_colors(w))
+        return fail_usage("%s: a file of numbers holds one volume's values, "
                           "without --overlay; name a .png",
                           opts->output);
+    return layers_check(opts);
+}
+
+static int check_request(slice_work *w) {
+    const options *opts = &w->opts;
+    const bool frames = w->kind == SLICE_FRAMES;
+    int done = frames ? CONTINUE : check_picture(opts);
+    if (done == CONTINUE)
+        done = check_slices(w);
     if (done == CONTINUE)
         done = open_context(opts, &w->context);
     if (done != CONTINUE)
@@ -498,13 +240,17 @@ static int check_request(slice_work *w) {
     if (!w->settings.threads)
         w->settings.threads = process_processors();
     w->settings.mode = SNOW_MODE_OVER; /* a slice has none */
-    return check_picture_paths(w->context, opts);
+    return frames ? CONTINUE : check_picture_paths(w->context, opts);
 }
 
 static int run_stages(slice_work *w) {
-    int done = check_request(w);
+    int done = slice_choose_kind(w);
+    if (done == CONTINUE)
+        done = check_request(w);
     if (done != CONTINUE)
         return done;
+    if (w->kind == SLICE_FRAMES)
+        return slice_run_frames(w);
     interrupt_guard();
     done = make_picture(w);
     if (interrupt_unguard())
@@ -533,6 +279,7 @@ int cmd_slice(const options *opts) {
     snow_volume_close(w.volume);
     channels_close(&w.channels);
     free(w.cut);
+    free(w.places);
     snow_context_free(w.context);
     return done;
 }

@@ -68,7 +68,7 @@ static const struct {
     {VERB_SLICE,
      {"snowglass slice head.nii.gz -o middle.png",
       "snowglass slice ct.nrrd --axis coronal --at -12.5mm -w 400,40 -o c.png",
-      "snowglass slice cells.tif --axis z --at 30 -s 1024 -o z30.png"}},
+      "snowglass slice head.nii.gz --grid 5x4 -o grid.png"}},
     {VERB_TURNTABLE,
      {"snowglass turntable head.nii.gz -o head.mp4",
       "snowglass turntable ct.nrrd -o bone.gif --preset ct-bone --frames 60",

@@ -23,12 +23,15 @@ typedef struct movie_shot {
     int64_t time;     /* the step in that file */
     double azimuth;   /* of the camera, in degrees */
     int64_t step;     /* the step number to show, -1: none */
+    int64_t slice;    /* of a list of slices: its number, */
+    int64_t place;    /*   and its place among them */
 } movie_shot;
 
 typedef struct shot_list {
     movie_shot *shots;
     int64_t count;  /* at least 1 */
-    bool steps;     /* they are time steps */
+    bool steps;     /* they are time steps, or slices */
+    bool slices;
     int64_t looked; /* the look of all frames is chosen from so many shots, the
                        first: if one of them changes it is another movie; 0: of
                        none */

@@ -56,9 +56,9 @@ static snow_status make_frame(const movie *s, frame_slot *slot) {
     picture_annotations annotations = s->annotations;
     char path[PATH_MAX];
     annotations.info.time_value = s->times[slot->index];
-    snow_status status =
-        annotations_make(&annotations, shot->azimuth, shot->step, slot->image,
-                         slot->context, &overlay);
+    snow_status status = annotations_make(
+        &annotations, shot->azimuth, shot->step,
+        s->list->slices ? NULL : slot->image, slot->context, &overlay);
     form.overlay = overlay;
     form.depth = slot->depth;
     place_aside(&s->place, slot->index, path, sizeof path);

@@ -103,6 +103,8 @@ static char *text_of(const options *opts, const shot_list *list,
         const movie_shot *shot = &list->shots[index];
         fprintf(out, "azimuth %.17g time %" PRId64 " ", shot->azimuth,
                 shot->time);
+        if (list->slices)
+            fprintf(out, "slice %" PRId64 " ", shot->slice);
         print_identity(out, shot->path);
         fprintf(out, "\n");
     }

@@ -115,12 +115,19 @@ static void report_choices(shot_renderer *shots, snow_image *image) {
 }
 
 int shots_begin(shot_renderer *shots, const movie_shot *shot) {
+    if (shots->draw)
+        return shots->draw(shots->user, shot, &shots->made);
     int done = shots_volume(shots, shot);
     return done == CONTINUE ? render_state_begin(&shots->state, shot->azimuth)
                             : done;
 }
 
 int shots_finish(shot_renderer *shots, snow_image **image) {
+    if (shots->draw) {
+        *image = shots->made;
+        shots->made = NULL;
+        return CONTINUE;
+    }
     int done = render_state_finish(&shots->state, image);
     if (done == CONTINUE)
         done =

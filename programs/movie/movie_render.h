@@ -16,6 +16,10 @@ struct shot_renderer {
                        * of many, and no step was selected */
     bool drawn;       /* a picture has been made, and choices printed */
     paint_given painted; /* how a picture of values was painted */
+    /* Draws shots in place of the state, which then is lent; NULL: none. */
+    int (*draw)(void *user, const movie_shot *shot, snow_image **image);
+    void *user;
+    snow_image *made; /* by it, until it is finished */
 };
 
 /* Returns CONTINUE or an exit code. */

@@ -83,8 +83,12 @@ static int take_range(const options *opts, int64_t *from, int64_t *count) {
 
 int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     const options *opts = shots->state.opts;
-    movie_shot first = {files->paths[0], opts->time_range ? 0 : opts->time,
-                        opts->azimuth, 0};
+    movie_shot first = {files->paths[0],
+                        opts->time_range ? 0 : opts->time,
+                        opts->azimuth,
+                        0,
+                        0,
+                        0};
     out->count = files->count;
     out->steps = true;
     const bool given = options_given(opts, "time") && !opts->time_range;

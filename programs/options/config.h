@@ -39,7 +39,8 @@ void config_note(const options *opts, const snow_transfer *transfer,
 void config_note_channels(const options *opts, const channel_list *list,
                           snow_shade shade, const char *view);
 
-/* The same for a slice across an axis; `transfer` NULL: no colours. */
+/* The same for a slice across an axis, or for several (-1), or across all three
+ * (NULL); `transfer` NULL: no colours. */
 void config_note_slice(const options *opts, const snow_transfer *transfer,
                        const char *axis, int64_t index);
 

@@ -125,8 +125,10 @@ void config_note_slice(const options *opts, const snow_transfer *transfer,
                        const char *axis, int64_t index) {
     char at[24];
     snprintf(at, sizeof at, "%" PRId64, index);
-    chosen.axis = json_string(axis);
-    chosen.at = json_string(opts->at ? opts->at : at);
+    if (axis)
+        chosen.axis = json_string(axis);
+    if (opts->at || index >= 0)
+        chosen.at = json_string(opts->at ? opts->at : at);
     if (transfer && !opts->preset && !opts->tf) {
         if (snow_transfer_label(transfer, 0))
             chosen.preset = json_string("labels");

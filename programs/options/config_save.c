@@ -88,7 +88,10 @@ static void fill_recipe(const options *opts, const verb_row *verb,
         out->input = opts->operands[0];
     out->verb = verb->name;
     out->version = snow_version();
-    if (verb->bit == VERB_TURNTABLE)
+    out->grid = opts->grid;
+    out->ortho = opts->ortho;
+    if (verb->bit == VERB_TURNTABLE ||
+        (verb->bit == VERB_SLICE && options_given(opts, "frames")))
         out->frames = (int)opts->frames;
     out->fps = opts->fps;
     out->output =

@@ -245,7 +245,8 @@ const option_row option_table[] = {
      FIELD(overlay_look), 0, 0, "look of the overlay, of which any part may be left out: a preset, a colour map or "
      "list as of --colormap, or both; a range as of --range; opacities as of --opacity, "
      "or one factor from 0 to 1 for all, in a slice the most that it covers, such as "
-     "hot,2,12,0.6 or labels,3:#ff8800 (default: labels, or hot by its histogram)"},
+     "hot,2,12,0.6 or labels,3:#ff8800; or outline among them, for lines around what a "
+     "slice shows of it (default: labels, or hot by its histogram)"},
     {"clip", 0, "A,B,C,D", TOPIC_DATA, INPUT, read_clip, FIELD(clip), 0, 0, "remove the voxels beyond a plane in world coordinates, where A x + B y + "
      "C z > D; up to six planes, in one list (default: none)"},
 
@@ -283,14 +284,21 @@ const option_row option_table[] = {
      FIELD(axis), 0, 0, "axis that the slice lies across: x, y or z of the grid; or axial, coronal "
      "or sagittal, the axis of the grid that is nearest to that of the patient "
      "(default axial; of a single slice, its face)"},
-    {"at", 0, "INDEX|POSITION", TOPIC_MORE, SLICE, read_text, FIELD(at), 0, 0,
+    {"at", 0, "INDEX|POSITION|A:B:STEP|X,Y,Z", TOPIC_MORE, SLICE, read_text, FIELD(at), 0, 0,
      "slice: its number from 0, or a position in the world with its unit, such "
-     "as 12.5mm, for the slice nearest to it (default: the middle one)"},
-    {"frames", 0, "N", TOPIC_MORE, TURNTABLE, read_integer, FIELD(frames), 1,
-     1000000, "number of frames in one turn (default 120)"},
-    {"fps", 0, "N", TOPIC_MORE, MOVIES, read_real, FIELD(fps), 0.01, 1000, "frames per second of the movie (default 25; fewer, at least 2, for a "
-     "movie of less than 100 time steps)"},
-    {"resume", 0, NULL, TOPIC_MORE, MOVIES, read_flag, FIELD(resume), 0, 0, "continue an interrupted run and keep its finished frames; all other "
+     "as 12.5mm, for the slice nearest to it; of a series, a movie or a grid those from "
+     "A up to, not including, B; the point of --ortho in the world (default: "
+     "the middle; of several all)"},
+    {"grid", 0, "CxR", TOPIC_MORE, SLICE, read_text, FIELD(grid), 0, 0, "draw C times R slices in one picture, with their numbers, spread evenly over those that "
+     "show something, or over --at A:B"},
+    {"ortho", 0, NULL, TOPIC_MORE, SLICE, read_flag, FIELD(ortho), 0, 0, "draw the axial, coronal and sagittal slice through the point of --at "
+     "beside one another, at one scale, with lines through it"},
+    {"frames", 0, "N", TOPIC_MORE, TURNTABLE | SLICE, read_integer, FIELD(frames), 1,
+     1000000, "number of frames in one turn (default 120); of slices, so many of them, "
+     "spread evenly"},
+    {"fps", 0, "N", TOPIC_MORE, MOVIES | SLICE, read_real, FIELD(fps), 0.01, 1000, "frames per second of the movie (default 25; fewer, at least 2, for a "
+     "movie of less than 100 time steps or slices)"},
+    {"resume", 0, NULL, TOPIC_MORE, MOVIES | SLICE, read_flag, FIELD(resume), 0, 0, "continue an interrupted run and keep its finished frames; all other "
      "options must be the same"},
     {"cut", 0, "auto|equal|counted|bricks", TOPIC_RANKS, WRITTEN | SERVE,
      read_choice, FIELD(cut), 0, 0, "how the volume is partitioned: equal slabs as in the paper; counted or "
@@ -341,7 +349,7 @@ const verb_row verb_table[] = {
     {"movie", VERB_MOVIE, -1, "INPUT...|run_%04d.nrrd -o OUT",
      "make a movie over time steps"},
     {"slice", VERB_SLICE, 1, "INPUT [--axis A] [--at N] [-o OUT]",
-     "make a picture of one slice"},
+     "make a picture of one slice or of several, or a movie of them"},
     {"info", VERB_INFO, -1, "INPUT... [--json]",
      "print geometry, type, range, histogram and sparse ratio"},
     {"phantom", VERB_PHANTOM, 1, "NAME -o OUT", "write a built-in test volume"},

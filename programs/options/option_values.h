@@ -29,6 +29,7 @@ typedef struct overlay_look_value {
     const char *text;    /* as it was given; NULL: not */
     const char *preset;  /* NULL: none */
     char colormap[1024]; /* a name or a list; "": none */
+    bool outline;        /* borders alone, in slices */
     range_value range;
     point_list opacity;
 } overlay_look_value;

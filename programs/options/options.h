@@ -126,6 +126,8 @@ typedef struct options {
     bool each_time; /* `time` is one of all steps, which are opened in turn */
 
     const char *axis, *at;  /* of a slice; NULL: not given */
+    const char *grid;       /* of slices; NULL: not given */
+    bool ortho;             /* slices across all three axes */
     listen_value listen;    /* of the viewer */
     const char *allow_host; /* names, separated by commas; NULL: none */
     const char *embed;      /* origins, separated by commas; NULL: none */

@@ -9,6 +9,7 @@
 #include <strings.h>
 
 #define PART_BYTES 64
+#define OUTLINE "outline" /* stands among the names */
 
 /* What parts are, in the order in which they may stand. */
 typedef enum part_kind {
@@ -47,7 +48,7 @@ static part_kind kind_of(const char *part, const char *rest) {
     if (is_end(part))
         return take_part(&rest, next) && is_end(next) ? PART_RANGE
                                                       : PART_OPACITY;
-    return snow_preset_from_name(part) >= 0 ||
+    return strcasecmp(part, OUTLINE) == 0 || snow_preset_from_name(part) >= 0 ||
                    snow_colormap_from_name(part) >= 0
                ? PART_NAME
                : PART_WRONG;
@@ -61,7 +62,9 @@ static bool append(char *list, size_t size, const char *part) {
 
 static bool take_name(const char *part, overlay_look_value *out) {
     const int preset = snow_preset_from_name(part);
-    if (preset >= 0 && !out->preset)
+    if (strcasecmp(part, OUTLINE) == 0 && !out->outline)
+        out->outline = true;
+    else if (preset >= 0 && !out->preset)
         out->preset = snow_preset_name((size_t)preset);
     else if (*out->colormap || snow_colormap_from_name(part) < 0)
         return false;

@@ -29,6 +29,9 @@ int layers_check(const options *opts) {
         return done;
     if (strcmp(opts->mode, "slice") == 0)
         return CONTINUE;
+    if (opts->overlay_look.outline && opts->verbosity >= 0 && process_talks())
+        say("note: --overlay-look outline: lines are drawn in slices; a volume "
+            "is drawn whole");
     if (opts->overlay && strcmp(opts->mode, "over") != 0)
         return fail_usage("--overlay: needs mode over; remove --mode");
     if (opts->overlay && (strcmp(opts->method, "original") == 0 ||

@@ -151,6 +151,8 @@ const recipe_key recipe_keys[] = {
     REAL("fps", fps, 0.01, 1000),
     TEXT("axis", axis),
     TEXT("at", at),
+    TEXT("grid", grid),
+    MADE("ortho", flag, ortho, 0, 0, 0),
     TEXT("verb", verb),
     TEXT("version", version),
     MADE("reread", flag, reread, 0, 0, 0),

@@ -3,6 +3,7 @@
  *
  * A pixel is the mean of the slice's own voxels, weighted by a tent of two
  * voxels, or of two pixels where these are larger. */
+#include "render/slice.h"
 #include "base/thread_pool.h"
 #include "base/vec3.h"
 #include "image/image.h"
@@ -67,30 +68,43 @@ static void look_up(double steps[2][3], snow_view *view) {
         view->up[i] = copysign(1, rise[up]) * steps[up][i] / length[up];
 }
 
-/* The whole slice in a picture of a given size, or of its own. */
-static void frame_slice(const snow_volume_info *info, int axis,
-                        snow_view *view) {
-    double steps[2][3], right[3], width = 0, height = 0, pitch = INFINITY;
+double snow_slice_measure(const snow_volume_info *info, int axis,
+                          snow_view *view, double extent[2]) {
+    double steps[2][3], right[3], pitch = INFINITY;
     for (int n = 0; n < 6; n++)
         steps[n / 3][n % 3] = info->matrix[n % 3][(axis + 1 + n / 3) % 3];
     look_up(steps, view);
     snow_cross(view->up, view->back, right);
+    extent[0] = extent[1] = 0;
     for (int n = 0; n < 2; n++) {
         double count = (double)info->dims[(axis + 1 + n) % 3];
-        width += count * fabs(snow_dot(steps[n], right));
-        height += count * fabs(snow_dot(steps[n], view->up));
+        extent[0] += count * fabs(snow_dot(steps[n], right));
+        extent[1] += count * fabs(snow_dot(steps[n], view->up));
         pitch = fmin(pitch, snow_length(steps[n]));
     }
-    if (view->width > 0 && view->height > 0) {
-        pitch = fmax(width / snow_view_room(view), height / view->height);
-    } else {
-        double wide = width / (1 - view->strip);
-        pitch = fmax(pitch, fmax(wide, height) / SNOW_IMAGE_SIDE);
-        view->width = (int)fmax(rint(wide / pitch), 1);
-        view->height = (int)fmax(rint(height / pitch), 1);
-    }
+    return pitch;
+}
+
+void snow_slice_scale(const snow_volume_info *info, double pitch,
+                      snow_view *view) {
     view->zoom = 2 * snow_volume_radius(info) /
                  (pitch * fmin(snow_view_room(view), view->height));
+}
+
+/* The whole slice in a picture of a given size, or of its own. */
+static void frame_slice(const snow_volume_info *info, int axis,
+                        snow_view *view) {
+    double extent[2], pitch = snow_slice_measure(info, axis, view, extent);
+    if (view->width > 0 && view->height > 0) {
+        pitch =
+            fmax(extent[0] / snow_view_room(view), extent[1] / view->height);
+    } else {
+        const double wide = extent[0] / (1 - view->strip);
+        pitch = fmax(pitch, fmax(wide, extent[1]) / SNOW_IMAGE_SIDE);
+        view->width = (int)fmax(rint(wide / pitch), 1);
+        view->height = (int)fmax(rint(extent[1] / pitch), 1);
+    }
+    snow_slice_scale(info, pitch, view);
 }
 
 snow_status snow_slice_view(snow_context *context, const snow_volume_info *info,

@@ -331,6 +331,16 @@ overlaid("values over a slice",
          ("dose.nrrd", "--overlay-look", "red,10,30,10:0,30:0.8"),
          np.clip((flat - 10) / 20, 0, 1) * [1, 0, 0],
          np.clip((flat - 10) / 20, 0, 1) * 0.8)
+# Lines around labels: inside each, a pixel wide in small pictures.
+path, flat = "b.nii", plane(cells, 2, 5)
+edge = np.zeros(flat.shape, bool)
+for axis, step in ((0, 1), (0, -1), (1, 1), (1, -1)):
+    edge |= (np.roll(flat, step, axis) != flat)
+overlaid("outlines", ("cells.nrrd", "--overlay-look", "outline"), INKS[flat],
+         1.0 * (edge & (flat > 0))[..., None])
+overlaid("translucent ones", ("cells.nrrd", "--overlay-look", "outline,0.4"),
+         INKS[flat], 0.4 * (edge & (flat > 0))[..., None])
+
 done = run(path, "--overlay", "cells.nrrd")
 oracle.checked += 1
 if done.returncode != 2 or "without --overlay" not in done.stderr:
@@ -345,6 +355,81 @@ check("a slope", np.array_equal(values("b.nii", "--at", "5"),
 check("a crop", np.array_equal(
     values("a.nii", "--at", "1", "--crop", "2:9,3:11,4:8"),
     plane(VOXELS[2:9, 3:11, 4:8], 2, 1)))
+
+# A series has a picture for each slice, in the order that is asked.
+for asked, wanted in (("", range(10)), ("2:8:3", (2, 5)), ("-3:", (7, 8, 9)),
+                      ("8:2", range(8, 2, -1)), ("::-4", (9, 5, 1)),
+                      ("10mm:19mm:4.5mm", (2, 5))):
+    for name in os.listdir("."):
+        if name.startswith("s_") or name.startswith(".s_"):
+            os.remove(name)
+    run("a.nii", *(("--at=" + asked,) if asked else ()), out="s_%02d.npy")
+    got = [np.load(f"s_{n:02d}.npy") for n in range(len(wanted))]
+    check(f"a series {asked}", not os.path.exists(f"s_{len(wanted):02d}.npy") and
+          all(np.array_equal(one, plane(VOXELS, 2, n))
+              for one, n in zip(got, wanted)))
+for asked in ("5:5", "3:4:0", "a:b", "1:2:3:4", "40:50"):
+    done = run("a.nii", "--at", asked, out="t_%02d.npy")
+    check(f"{asked} is refused", done.returncode == 2 and "--at" in done.stderr)
+
+# A grid: its slices lie in the middle of equal parts of those that show
+# something, with two pixels between them, and one window.
+thick = np.zeros((12, 14, 40), np.uint16)
+thick[:, :, 8:32] = random.integers(500, 4000, (12, 14, 24))
+thick[3, 3, 5] = 4000  # not 1 %
+nifti("thick.nii", thick, MATRIX)
+run("thick.nii", "--grid", "3x2", "--stats", "g.json",
+    "--no-labels", "--bits", "16", out="out.png")
+told = json.loads(oracle.got("g.json"))["slice"]["indices"]
+check("a grid's slices", told == [int(8 + (n + 0.5) * 4) for n in range(6)])
+path = "thick.nii"
+sheet = np.zeros((2 * 14 + 2, 3 * 12 + 4, 4))
+for n, index in enumerate(told):
+    y, x = n // 3 * 16, n % 3 * 14
+    sheet[y:y + 14, x:x + 12] = (plane(thick, 2, index) / 4000)[..., None]
+    sheet[y:y + 14, x:x + 12, 3] = 1
+same_picture("a grid", ("--grid", "3x2", "--background", "none"), sheet,
+             0.00002)
+run("a.nii", "--grid", "4x1", "--at", "2:6", "--axis", "y")
+got = np.load("out.npy")
+check("a grid of numbers", got.shape == (10, 4 * 12 + 6) and all(
+    np.array_equal(got[:, 14 * n:14 * n + 12], plane(VOXELS, 1, 2 + n))
+    for n in range(4)) and np.isnan(got[:, 12:14]).all())
+
+# Three slices through a point at one scale: where it lies in voxels, and in the
+# picture, by the affine alone (as nibabel applies it).
+point = np.array([-20 + 1.5 * 4.3, 31 + 1.5 * 9.2, 7 + 1.5 * 6.1])
+for order, signs in oracle.few(oracle.TURNS, 6, 1):
+    new, matrix = oracle.turned(VOXELS, MATRIX, order, signs)
+    nifti("turned.nii", new, matrix)
+    # Glued, so that a point before zero is no option.
+    run("turned.nii", "--ortho", "--at=" + ",".join(map(str, point)))
+    got = np.load("out.npy")
+    wanted = np.full((14, 12 + 2 + 12 + 2 + 14), np.nan)
+    wanted[:, :12] = plane(VOXELS, 2, 6)
+    wanted[2:12, 14:26] = plane(VOXELS, 1, 9)
+    wanted[2:12, 28:] = plane(VOXELS, 0, 4)
+    check(f"three slices {order} {signs}",
+          np.array_equal(got, wanted, equal_nan=True))
+run("a.nii", "--ortho", "--at=" + ",".join(map(str, point)), "-s", "840x280",
+    "--no-labels", out="out.png")
+try:
+    from PIL import Image
+    pixels = np.asarray(Image.open("out.png").convert("RGB")).astype(int)
+    green = pixels[..., 1] - pixels[..., 0] > 100
+    rows, columns = np.nonzero(green[:, :230])
+    pitch = max((12 + 12 + 14) * 1.5 / 836, 14 * 1.5 / 280)
+    left = (840 - int(38 * 1.5 / pitch + 1e-6) - 4) // 2
+    at = (left + (11.5 - 4.3) * 1.5 / pitch, (13.5 - 9.2) * 1.5 / pitch)
+    check("lines through the point", abs(np.median(columns) - at[0]) < 1 or
+          abs(np.median(rows) - at[1]) < 1)
+    check("one upright", abs(np.bincount(columns).argmax() - at[0]) < 1)
+    check("one level", abs(np.bincount(rows).argmax() - at[1]) < 1)
+except ImportError as missing:
+    print("skip   lines through a point:", missing)
+for at in ("1,2", "1,2,x", "900,0,0"):
+    done = run("a.nii", "--ortho", "--at", at)
+    check(f"a point {at} is refused", done.returncode == 2)
 
 # The figures say which slice it was.
 run("a.nii", "--axis", "coronal", "--at", "3", "--stats", "s.json")

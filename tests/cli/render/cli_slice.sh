@@ -86,6 +86,40 @@ pairs png slice <<'END'
 the configuration of another slice | --config first.json -y | != | --config first.json -y --at 0
 END
 
+# Several slices: in one picture, and in files that are kept as a movie's are.
+again "a grid" slice again.png m.nrrd --grid 3x2 --legend
+again "a grid of a range" slice again.png m.nrrd --grid 2x2 --at 5:20 -s 300 --title t
+again "three of them" slice again.png m.nrrd --ortho --at 10,12.5,9mm -s 400x200
+run 0 "a series" "$TOOL" slice m.nrrd -o s_%02d.png --at 4:16:5
+says 'axial slices 4 to 14 of 0 to 29; grey [0-9.]+ \(.*; 3 frames of 40x40 to s_%02d.png'
+check "has three pictures" [ -e s_00.png ] && [ -e s_02.png ] && [ ! -e s_03.png ]
+range=$(grep -oE 'grey [0-9.]+' "$ERR" | cut -d' ' -f2)
+"$TOOL" slice m.nrrd -o nine.png --at 9 --range "${range/../,}" -q
+check "of which each is that of its slice" cmp -s nine.png s_01.png
+refused 4 "they are not replaced" 'use --resume to continue, --overwrite' \
+    "$TOOL" slice m.nrrd -o s_%02d.png --at 4:16:5
+cp s_01.png kept.png
+rm s_02.png
+touch -d 2001-01-01 s_01.png
+run 0 "but continued" "$TOOL" slice m.nrrd -o s_%02d.png --at 4:16:5 --resume -q
+check "with those that are there" [ s_01.png -ot nine.png ]
+check "and the one that is not" is_png s_02.png
+refused 4 "not as others" 'made with other settings' \
+    "$TOOL" slice m.nrrd -o s_%02d.png --at 4:16:4 --resume
+run 0 "a movie of five slices" "$TOOL" slice m.nrrd -o s.webp --frames 5 --stats movie.json
+check "says so" [ "$(grep -c . movie.json)" -gt 0 ]
+says 'axial slices 0 to 29 of 0 to 29; .*5 frames'
+refusals 2 "$TOOL" slice m.nrrd <<'END'
+-o x.png --at 3:9|holds one slice; number the files
+-o x.png --frames 3|holds one slice; number the files
+-o x.png --fps 3|--fps: is of many pictures
+-o x.png --grid 3|'3' is no grid; give COLUMNSxROWS
+-o x.png --grid 3x3 --at 4|'4' is one slice; with --grid give a range
+-o x.png --grid 3x3 --ortho|conflicts with --ortho
+-o x.png --ortho --axis x|--ortho has all three
+-o x.png --ortho --at 3|'3' is no point; with --ortho give X,Y,Z in mm
+END
+
 # A volume of 8 GiB, of which a slice is read.
 truncate -s 8G large.raw
 raw="--dims 2048x2048x2048 --type uint8"

@@ -1,0 +1,230 @@
+/* slice_draw.c - the picture of a slice, or of several beside one another. */
+#include "picture/annotations.h"
+#include "picture/outputs.h"
+#include "run/log.h"
+#include "slice/slice.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <snowglass/overlay.h>
+
+/* Lines through a point, which leave it free: of a picture's shorter side. */
+#define CROSS_GAP 0.03
+static const float cross_color[4] = {0.25F, 0.9F, 0.35F, 1};
+
+/* --- one slice ------------------------------------------------------------ */
+
+/* A slice that was read alone is number 0 of its volume, in whose size the zoom
+ * of the view counts. */
+static snow_status find_view(slice_work *w, int64_t part, snow_view *view,
+                             int64_t *index) {
+    static const char *const axes[] = {"x", "y", "z"};
+    int axis;
+    *view = w->places[part].view;
+    *index = w->kind == SLICE_ONE ? 0 : w->places[part].index;
+    if (w->kind != SLICE_ONE)
+        return SNOW_STATUS_OK;
+    view->width = (int)w->opts.size[0];
+    view->height = (int)w->opts.size[1];
+    snow_status status =
+        snow_slice_view(w->context, snow_volume_get_info(w->volume),
+                        axes[w->axis], view, &axis);
+    w->places[part].view = *view;
+    w->size[0] = view->width;
+    w->size[1] = view->height;
+    return status;
+}
+
+snow_status slice_draw_part(slice_work *w, int64_t part, snow_image **out) {
+    snow_view view;
+    int64_t index;
+    snow_image *image = NULL;
+    const double begin = seconds_now();
+    snow_status status = find_view(w, part, &view, &index);
+    if (status == SNOW_STATUS_OK)
+        status = snow_slice_render(w->volume, index, w->transfer, &view,
+                                   &w->settings, &image);
+    if (status == SNOW_STATUS_OK && w->transfer && w->channels.list.count)
+        status = channels_add_slices(&w->channels, w->context, index, &view,
+                                     &w->settings, &image);
+    if (status == SNOW_STATUS_OK)
+        status = layers_lay_slice(&w->opts, &w->layers, index, &view,
+                                  &w->settings, w->context, &image);
+    w->frame = seconds_now() - begin;
+    if (status == SNOW_STATUS_OK)
+        *out = image;
+    else
+        snow_image_free(image);
+    return status;
+}
+
+/* --- several -------------------------------------------------------------- */
+
+/* Copies a slice to its place; grey ones become colours. */
+static void paste(snow_image *from, const snow_slice_place *place,
+                  snow_image *onto) {
+    const int parts = snow_image_channels(from);
+    const int to = snow_image_channels(onto), width = snow_image_width(onto);
+    const float *pixel = snow_image_pixels(from);
+    for (int y = 0; y < snow_image_height(from); y++) {
+        float *out =
+            snow_image_pixels(onto) +
+            ((size_t)(place->y + y) * (size_t)width + (size_t)place->x) *
+                (size_t)to;
+        for (int x = 0; x < snow_image_width(from); x++, pixel += parts)
+            for (int c = 0; c < to; c++)
+                *out++ = pixel[parts == to ? c : c == 3 ? parts - 1 : 0];
+    }
+}
+
+/* Fills the pixels of a slice from (x0, y0) to (x1, y1), as far as they are
+ * within. */
+static void fill(snow_image *onto, const snow_slice_place *place, double x0,
+                 double y0, double x1, double y1) {
+    const int width = snow_image_width(onto);
+    const int left = (int)fmax(rint(x0), 0), top = (int)fmax(rint(y0), 0);
+    const int right = (int)fmin(rint(x1), place->view.width);
+    const int bottom = (int)fmin(rint(y1), place->view.height);
+    for (int y = top; y < bottom; y++)
+        for (int x = left; x < right; x++)
+            memcpy(snow_image_pixels(onto) +
+                       ((size_t)(place->y + y) * (size_t)width +
+                        (size_t)(place->x + x)) *
+                           4,
+                   cross_color, sizeof cross_color);
+}
+
+static void draw_cross(const slice_work *w, const snow_slice_place *place,
+                       snow_image *onto) {
+    const double side = fmin(w->size[0], w->size[1]);
+    const double wide = fmax(rint(side / 600), 1);
+    const double gap = fmax(CROSS_GAP * side, 3);
+    const double x = floor(place->cross[0] - (wide - 1) / 2);
+    const double y = floor(place->cross[1] - (wide - 1) / 2);
+    fill(onto, place, x, 0, x + wide, y - gap);
+    fill(onto, place, x, y + wide + gap, x + wide, place->view.height);
+    fill(onto, place, 0, y, x - gap, y + wide);
+    fill(onto, place, x + wide + gap, y, place->view.width, y + wide);
+}
+
+/* Where there are no slices the picture is clear, or has no values. */
+static snow_status new_sheet(slice_work *w) {
+    const int parts = w->transfer ? 4 : 1;
+    snow_status status =
+        snow_image_new(w->context, w->size[0], w->size[1], parts, &w->image);
+    const size_t count = (size_t)w->size[0] * (size_t)w->size[1];
+    for (size_t n = 0; n < count && parts == 1 && status == SNOW_STATUS_OK; n++)
+        snow_image_pixels(w->image)[n] = NAN;
+    return status;
+}
+
+snow_status slice_draw(slice_work *w) {
+    if (w->kind == SLICE_ONE)
+        return slice_draw_part(w, 0, &w->image);
+    const double begin = seconds_now();
+    snow_status status = new_sheet(w);
+    for (int64_t n = 0; n < w->count && status == SNOW_STATUS_OK; n++) {
+        snow_image *image = NULL;
+        status = slice_draw_part(w, n, &image);
+        if (status != SNOW_STATUS_OK)
+            break;
+        paste(image, &w->places[n], w->image);
+        if (w->kind == SLICE_ORTHO && w->transfer)
+            draw_cross(w, &w->places[n], w->image);
+        snow_image_free(image);
+    }
+    w->frame = seconds_now() - begin;
+    return status;
+}
+
+/* --- what is drawn over it ------------------------------------------------ */
+
+snow_view slice_whole_view(const slice_work *w) {
+    snow_view view = w->places[0].view;
+    const double across = view.width * (1 - view.strip);
+    const double side = fmin(across, view.height);
+    view.width = w->size[0];
+    view.height = w->size[1];
+    view.strip = w->strip;
+    view.zoom *= side / fmin(view.width * (1 - view.strip), view.height);
+    return view;
+}
+
+static double text_height(const slice_work *w, double share) {
+    const snow_view *view = &w->places[0].view;
+    return fmax(9, rint(share * fmin(view->width, view->height)));
+}
+
+/* In the upper left of each, or the upper right where a title is. */
+static snow_status add_numbers(const slice_work *w, snow_overlay *overlay) {
+    const double height = text_height(w, 0.05), margin = 0.6 * height;
+    snow_status status = SNOW_STATUS_OK;
+    const bool right = w->opts.title || w->opts.annotate.text;
+    for (int64_t n = 0; n < w->count && status == SNOW_STATUS_OK; n++) {
+        const snow_slice_place *place = &w->places[n];
+        char text[24];
+        snprintf(text, sizeof text, "%" PRId64, place->index);
+        status = snow_overlay_text(
+            overlay, place->x + (right ? place->view.width - margin : margin),
+            place->y + margin, right, 0, height, text);
+    }
+    return status;
+}
+
+/* The letters of each of the three, or of the first one of a grid. */
+static snow_status add_letters(const slice_work *w, snow_overlay *overlay) {
+    static const double shares[4][2] = {{0, 0.5}, {1, 0.5}, {0.5, 0}, {0.5, 1}};
+    const double height =
+        fmin(snow_overlay_text_height(overlay), text_height(w, 0.06));
+    const double margin =
+        0.02 * fmin(w->places[0].view.width, w->places[0].view.height);
+    snow_status status = SNOW_STATUS_OK;
+    const int64_t count = w->kind == SLICE_GRID ? 1 : w->count;
+    for (int n = 0; n < 4 * count && status == SNOW_STATUS_OK; n++) {
+        const snow_slice_place *place = &w->places[n / 4];
+        const double *share = shares[n % 4];
+        char letters[4][4];
+        status =
+            snow_view_orientation(w->context, &w->whole, &place->view, letters);
+        if (status == SNOW_STATUS_OK && *letters[n % 4])
+            status = snow_overlay_text(
+                overlay,
+                place->x + margin + share[0] * (place->view.width - 2 * margin),
+                place->y + margin +
+                    share[1] * (place->view.height - 2 * margin),
+                share[0], share[1], height, letters[n % 4]);
+    }
+    return status;
+}
+
+snow_status slice_make_overlay(slice_work *w, snow_overlay **out) {
+    options opts = w->opts;
+    snow_overlay *overlay = NULL;
+    opts.no_labels |= w->kind != SLICE_ONE; /* each has its own */
+    picture_annotations annotations = {&opts,
+                                       *snow_volume_get_info(w->volume),
+                                       slice_whole_view(w),
+                                       w->transfer,
+                                       {0, 0},
+                                       w->transfer ? &w->channels : NULL,
+                                       layers_legend(&w->layers, false)};
+    const bool more =
+        w->kind != SLICE_ONE && !w->opts.no_labels && slice_has_colors(w);
+    annotations_find_unit(&opts, w->volume, false, &annotations.info);
+    snow_status status =
+        annotations_make(&annotations, 0, -1, NULL, w->context, &overlay);
+    if (status == SNOW_STATUS_OK && more && !overlay)
+        status = snow_overlay_new(w->context, w->size[0], w->size[1], &overlay);
+    if (status == SNOW_STATUS_OK && more)
+        status = add_letters(w, overlay);
+    if (status == SNOW_STATUS_OK && more && w->kind == SLICE_GRID)
+        status = add_numbers(w, overlay);
+    if (status == SNOW_STATUS_OK)
+        *out = overlay;
+    else
+        snow_overlay_free(overlay);
+    return status;
+}

@@ -1,0 +1,163 @@
+/* slice_read.c - reads slices, what lies over them, and their look. */
+#include "commands/commands.h"
+#include "picture/outputs.h"
+#include "picture/warnings.h"
+#include "run/log.h"
+#include "slice/slice.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool slice_has_colors(const slice_work *w) {
+    const int bits = snow_image_format_bits(w->opts.output);
+    return bits > 0 || (bits < 0 && w->kind == SLICE_FRAMES) ||
+           strcmp(w->opts.output, "-") == 0;
+}
+
+static void crop_to_slice(slice_work *w) {
+    int64_t *crop = w->opts.crop[w->axis];
+    crop[0] += w->places[0].index;
+    crop[1] = crop[0] + 1;
+}
+
+/* The slice in the place of the whole, as a crop would have read it. */
+static int cut_slice(slice_work *w) {
+    snow_volume_info info = w->whole;
+    snow_volume *slice = NULL;
+    const int64_t *dims = w->whole.dims, index = w->places[0].index;
+    const size_t size = snow_type_size(info.type);
+    const size_t steps[3] = {size, size * (size_t)dims[0],
+                             size * (size_t)(dims[0] * dims[1])};
+    const int u = w->axis == 0, v = w->axis == 2 ? 1 : 2;
+    info.dims[w->axis] = 1;
+    for (int row = 0; row < 3; row++)
+        info.matrix[row][3] += info.matrix[row][w->axis] * (double)index;
+    w->cut = malloc(size * (size_t)(dims[u] * dims[v]));
+    if (!w->cut)
+        return fail_memory("out of memory for the slice; close other programs");
+    char *out = w->cut;
+    const char *from = snow_volume_voxels(w->volume);
+    from += (size_t)index * steps[w->axis];
+    for (int64_t b = 0; b < dims[v]; b++)
+        for (int64_t a = 0; a < dims[u]; a++, out += size)
+            memcpy(out, from + (size_t)a * steps[u] + (size_t)b * steps[v],
+                   size);
+    snow_status status = snow_volume_wrap(w->context, &info, w->cut, &slice);
+    if (status != SNOW_STATUS_OK)
+        return fail_status(w->context, status);
+    snow_volume_close(w->volume);
+    w->volume = slice;
+    if (!options_given(&w->opts, "crop"))
+        w->layers.whole = &w->whole;
+    crop_to_slice(w);
+    return CONTINUE;
+}
+
+/* Standard input can be read only once, so all of it is. */
+static int inspect_whole(slice_work *w) {
+    if (strcmp(w->path, "-") == 0) {
+        w->opts.mixes = true;
+        int done = open_input(w->context, &w->opts, w->path, &w->volume);
+        if (done == CONTINUE)
+            w->whole = *snow_volume_get_info(w->volume);
+        return done;
+    }
+    snow_volume_options data = data_options(&w->opts);
+    snow_volume_info_init(&w->whole);
+    show_warnings(&w->opts, w->context, false); /* they come again */
+    int done = check_status(
+        w->context, snow_volume_inspect(w->context, w->path, &data, &w->whole));
+    show_warnings(&w->opts, w->context, true);
+    return done;
+}
+
+int slice_inspect(slice_work *w) {
+    int done = inspect_whole(w);
+    if (done == CONTINUE)
+        done = slice_find(w);
+    snow_volume_info held = w->whole; /* in memory */
+    if (w->kind == SLICE_ONE)
+        held.dims[w->axis] = 1;
+    if (done == CONTINUE)
+        done = channels_choose(&w->opts, &held,
+                               slice_has_colors(w) || w->opts.show
+                                   ? channels_hinder(&w->opts)
+                                   : "a file of numbers has one",
+                               &w->channels);
+    return done;
+}
+
+static int read_volume(slice_work *w) {
+    if (w->volume)
+        return w->kind == SLICE_ONE ? cut_slice(w) : CONTINUE;
+    if (w->kind == SLICE_ONE)
+        crop_to_slice(w);
+    w->opts.mixes = true;
+    if (w->channels.list.count)
+        w->opts.channel = w->channels.list.picks[0].index;
+    return open_input(w->context, &w->opts, w->path, &w->volume);
+}
+
+/* Labels are drawn as such where nothing else is asked, as in a picture. */
+int slice_open_colors(slice_work *w) {
+    static options automatic; /* large */
+    const options *opts = &w->opts;
+    automatic = *opts;
+    automatic.mode = "over";
+    bool asked = opts->preset || opts->tf || opts->colormap ||
+                 opts->scale.log || opts->scale.symlog != 0 ||
+                 options_range(opts).kind != SNOW_RANGE_AUTO;
+    int done = CONTINUE;
+    if (w->channels.list.count) {
+        snow_status status =
+            channels_look(NULL, opts, &w->whole, &w->channels.list.picks[0],
+                          w->volume, &w->transfer);
+        channels_close_volumes(&w->channels);
+        if (status == SNOW_STATUS_OK)
+            status = channels_open(opts, w->context, w->path, false, 0,
+                                   &w->channels);
+        return check_volume(w->context, status, name_of_input(w->path));
+    }
+    if (!asked)
+        done = open_look(w->context, &automatic, w->volume, &w->transfer);
+    if (done != CONTINUE ||
+        (w->transfer && snow_transfer_label(w->transfer, 0)))
+        return done;
+    snow_transfer_free(w->transfer);
+    w->transfer = NULL;
+    return open_look(w->context, opts, w->volume, &w->transfer);
+}
+
+void slice_describe_colors(const slice_work *w, char *out, size_t size) {
+    if (w->transfer && w->channels.list.count) {
+        channels_describe(&w->channels, out, size);
+        return;
+    }
+    const char *text =
+        w->transfer ? snow_transfer_description(w->transfer) : "data values";
+    const char *opacity = strstr(text, "; opacity"), *reason = NULL;
+    for (const char *at = opacity; at && (at = strstr(at, " ("));)
+        reason = at++;
+    snprintf(out, size, "%.*s%s",
+             opacity ? (int)(opacity - text) : (int)strlen(text), text,
+             reason ? reason : "");
+}
+
+int slice_read(slice_work *w) {
+    const double begin = w->begin;
+    progress_begin(&w->opts, "reading");
+    int done = read_volume(w);
+    progress_end(&w->opts);
+    w->times.read = seconds_now() - begin;
+    if (done == CONTINUE && slice_has_colors(w))
+        done = slice_open_colors(w);
+    if (done == CONTINUE)
+        done = slice_spread(w);
+    if (done == CONTINUE)
+        done = layers_open(&w->opts, w->context, w->volume, &w->layers);
+    if (done == CONTINUE && w->transfer)
+        done = slice_leave_strip(w);
+    w->times.look = seconds_now() - begin - w->times.read;
+    return done;
+}
