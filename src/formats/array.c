@@ -345,14 +345,9 @@ snow_status snow_array_read(snow_source *source,
     }
     if (status == SNOW_STATUS_OK && !array->more)
         status = snow_source_finish(source);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    if (array->coding == SNOW_CODING_PLAIN)
+    if (status == SNOW_STATUS_OK && array->coding == SNOW_CODING_PLAIN)
         snow_volume_order_bytes(volume, array->big_endian);
-    *out = volume;
-    return SNOW_STATUS_OK;
+    return snow_volume_give(status, volume, out);
 }
 
 snow_status snow_array_take(snow_context *context,
@@ -434,10 +429,5 @@ snow_status snow_array_read_text(snow_source *source,
         channels == 1
             ? snow_read_numbers(source, info->type, false, &all, volume->owned)
             : read_channel(source, &region, channels, channel, volume);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    *out = volume;
-    return SNOW_STATUS_OK;
+    return snow_volume_give(status, volume, out);
 }

@@ -129,6 +129,11 @@ snow_status snow_volume_replace_spacing(snow_context *context,
 snow_status snow_volume_finish(snow_context *context, snow_status status,
                                snow_volume *volume, snow_volume **out);
 
+/* Gives a volume that was made, or closes it after a failure, whose status it
+ * passes on.  `volume` and `out` may be NULL. */
+snow_status snow_volume_give(snow_status status, snow_volume *volume,
+                             snow_volume **out);
+
 /* Crops a volume that was read as a whole. */
 snow_status snow_volume_crop(const snow_volume_options *options,
                              snow_volume **volume);

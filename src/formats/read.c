@@ -27,13 +27,9 @@ snow_status snow_volume_read(snow_source *source,
         status = snow_file_part_read(source, &part, volume->owned);
     if (status == SNOW_STATUS_OK)
         status = snow_source_finish(source);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    snow_volume_order_bytes(volume, big_endian);
-    *out = volume;
-    return SNOW_STATUS_OK;
+    if (status == SNOW_STATUS_OK)
+        snow_volume_order_bytes(volume, big_endian);
+    return snow_volume_give(status, volume, out);
 }
 
 void snow_volume_order_bytes(snow_volume *volume, bool big_endian) {
@@ -107,7 +103,11 @@ snow_status snow_volume_crop(const snow_volume_options *options,
 
 snow_status snow_volume_finish(snow_context *context, snow_status status,
                                snow_volume *volume, snow_volume **out) {
-    status = snow_lookup_end(context, status);
+    return snow_volume_give(snow_lookup_end(context, status), volume, out);
+}
+
+snow_status snow_volume_give(snow_status status, snow_volume *volume,
+                             snow_volume **out) {
     if (status == SNOW_STATUS_OK && out)
         *out = volume;
     else

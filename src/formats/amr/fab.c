@@ -159,13 +159,9 @@ static snow_status read_cells(const amr_plotfile *file, snow_source *source,
     snow_volume *volume;
     SNOW_TRY(snow_volume_new(context, &info, &volume));
     snow_status status = snow_file_part_read(source, &whole, volume->owned);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    snow_volume_order_bytes(volume, values->big_endian);
-    *out = volume;
-    return SNOW_STATUS_OK;
+    if (status == SNOW_STATUS_OK)
+        snow_volume_order_bytes(volume, values->big_endian);
+    return snow_volume_give(status, volume, out);
 }
 
 snow_status snow_plotfile_read_box(void *user, size_t number,

@@ -359,9 +359,5 @@ snow_status snow_amr_read(const amr_grid *grid,
         snow_release(g.grid->context, g.levels[l].begun);
     }
     snow_release(g.grid->context, g.taken);
-    if (status == SNOW_STATUS_OK)
-        *out = g.out;
-    else
-        snow_volume_close(g.out);
-    return status;
+    return snow_volume_give(status, g.out, out);
 }

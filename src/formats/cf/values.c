@@ -295,20 +295,13 @@ static void blank(const cf_values *values, const snow_volume *from,
                     (long long)rounded);
 }
 
-/* On failure the volume is closed. */
 static snow_status blank_volume(const cf_values *values, bool is_whole,
                                 snow_volume **volume) {
     snow_volume *old = *volume, *made = old;
     snow_volume_info info = old->info;
     info.type = float_type(info.type);
-    *volume = NULL;
-    if (info.type != old->info.type) {
-        const snow_status status = snow_volume_new(old->context, &info, &made);
-        if (status != SNOW_STATUS_OK) {
-            snow_volume_close(old);
-            return status;
-        }
-    }
+    if (info.type != old->info.type)
+        SNOW_TRY(snow_volume_new(old->context, &info, &made));
     blank(values, old, is_whole, made);
     if (made != old)
         snow_volume_close(old);
@@ -373,19 +366,13 @@ snow_status snow_cf_read(cf_values *values, cf_read_fn *read, void *user,
     SNOW_TRY(read(user, options, info, out ? &volume : NULL));
     snow_status status =
         settle_rare(values, read, user, options, &whole, volume);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    if (volume && is_masked(values))
-        SNOW_TRY(blank_volume(
+    if (status == SNOW_STATUS_OK && volume && is_masked(values))
+        status = blank_volume(
             values, !memcmp(whole.dims, volume->info.dims, sizeof whole.dims),
-            &volume));
+            &volume);
     if (is_masked(values))
         info->type = float_type(info->type);
     info->slope = values->scale;
     info->intercept = values->offset;
-    if (out)
-        *out = volume;
-    return SNOW_STATUS_OK;
+    return snow_volume_give(status, volume, out);
 }

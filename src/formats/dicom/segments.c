@@ -317,12 +317,7 @@ snow_status snow_dicom_read_segments(const dicom_input *input,
         return SNOW_STATUS_OK;
     SNOW_TRY(snow_volume_new(input->context, info, &volume));
     snow_status status = fill_from_file(input, &s, volume);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
     memcpy(volume->patient, stack->frames->image->patient,
            sizeof volume->patient);
-    *out = volume;
-    return SNOW_STATUS_OK;
+    return snow_volume_give(status, volume, out);
 }

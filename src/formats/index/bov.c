@@ -280,12 +280,7 @@ static snow_status read_bricks(snow_source *source, const bov_header *h,
                 if (status == SNOW_STATUS_OK)
                     status = read_brick(source, h, number++, at, channel, &box,
                                         volume);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    *out = volume;
-    return SNOW_STATUS_OK;
+    return snow_volume_give(status, volume, out);
 }
 
 static snow_status read_bov(snow_source *source,

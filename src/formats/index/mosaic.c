@@ -236,12 +236,7 @@ static snow_status read_box(mosaic *m, const snow_volume_options *options,
         first[i] = m->first[i] + box.first[i];
     SNOW_TRY(snow_volume_new(context, info, &volume));
     snow_status status = read_parts(m, &own, first, volume);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    *out = volume;
-    return SNOW_STATUS_OK;
+    return snow_volume_give(status, volume, out);
 }
 
 snow_status snow_mosaic_read(const index_parts *parts,

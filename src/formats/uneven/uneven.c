@@ -303,11 +303,7 @@ static snow_status read_box(snow_context *context, resampling *r,
     if (status == SNOW_STATUS_OK)
         status = resample(r, to);
     snow_volume_close(from);
-    if (status == SNOW_STATUS_OK)
-        *out = to;
-    else
-        snow_volume_close(to);
-    return status;
+    return snow_volume_give(status, to, out);
 }
 
 snow_status snow_uneven_read(snow_context *context, const snow_uneven *grid,

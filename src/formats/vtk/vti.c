@@ -26,15 +26,8 @@ snow_status snow_vti_read_values(snow_source *source, vti_header *header,
     snow_volume *volume = NULL;
     SNOW_TRY(snow_vti_read_data(source, header, options, channel, info,
                                 out ? &volume : NULL));
-    if (!out)
-        return SNOW_STATUS_OK;
-    snow_status status = snow_source_verify(source);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    *out = volume;
-    return SNOW_STATUS_OK;
+    snow_status status = out ? snow_source_verify(source) : SNOW_STATUS_OK;
+    return snow_volume_give(status, volume, out);
 }
 
 /* The same from the bytes, if they are held and the source is read. */
@@ -77,10 +70,7 @@ static snow_status read_xml(snow_source *source, bool rectilinear,
                                       info, out ? &volume : NULL);
     else if (status == SNOW_STATUS_OK && bytes && out)
         status = snow_vti_check_tail(source, bytes, &header);
-    if (status == SNOW_STATUS_OK && out)
-        *out = volume;
-    else
-        snow_volume_close(volume);
+    status = snow_volume_give(status, volume, out);
     memcpy(header.grid.coordinates, small.coordinates,
            sizeof small.coordinates);
     snow_vtk_release(context, &header.grid);

@@ -181,11 +181,7 @@ static snow_status open_piece(void *user, size_t index,
     if (status == SNOW_STATUS_OK && out && !index && p->appended)
         status = snow_vti_check_tail(p->source, p->bytes, &header);
     snow_source_close(source);
-    if (status == SNOW_STATUS_OK && out)
-        *out = volume;
-    else
-        snow_volume_close(volume);
-    return status;
+    return snow_volume_give(status, volume, out);
 }
 
 snow_status snow_vti_read_pieces(snow_source *source, snow_seekable *bytes,

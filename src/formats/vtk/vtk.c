@@ -489,13 +489,7 @@ static snow_status read_vtk(snow_source *source,
     snow_vtk_release(reader.context, &reader.grid);
     if (status == SNOW_STATUS_OK && out)
         status = snow_source_verify(source);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(reader.volume);
-        return status;
-    }
-    if (out)
-        *out = reader.volume;
-    return SNOW_STATUS_OK;
+    return snow_volume_give(status, reader.volume, out);
 }
 
 static bool probe_vtk(const unsigned char *bytes, size_t size) {

@@ -210,11 +210,7 @@ static snow_status read_stored(void *user, const snow_volume_options *options,
         return SNOW_STATUS_OK;
     SNOW_TRY(snow_volume_new(context, info, &volume));
     snow_status status = snow_zarr_fill(&job->box, volume->owned);
-    if (status == SNOW_STATUS_OK)
-        *out = volume;
-    else
-        snow_volume_close(volume);
-    return status;
+    return snow_volume_give(status, volume, out);
 }
 
 /* The same as data, with missing ones. */
