@@ -28,6 +28,7 @@
 #ifndef SNOW_FORMATS_DICOM_DICOM_H
 #define SNOW_FORMATS_DICOM_DICOM_H
 
+#include "base/vec3.h"
 #include "formats/format.h"
 #include "io/folder.h"
 #include "io/lookup.h"
@@ -116,8 +117,9 @@ static inline int snow_dicom_order(double a, double b) {
     return (a > b) - (a < b);
 }
 
-static inline double snow_dicom_dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+/* The direction from slice to slice, unless a mosaic has the other one. */
+static inline void snow_dicom_normal(const dicom_frame *frame, double out[3]) {
+    snow_cross(frame->row, frame->column, out);
 }
 
 static inline double snow_dicom_smallest_pixel(const dicom_frame *frame) {
@@ -160,7 +162,8 @@ typedef struct dicom_element {
 /* A file whose elements are known; their values are read on request. */
 typedef struct dicom_reader {
     snow_context *context;
-    snow_seekable *store; /* outlives the reader */
+    snow_source *source;         /* of its own file; NULL: that is given */
+    snow_seekable *file, *store; /* the file's bytes; those of the elements */
     dicom_element *elements;
     size_t count;
     char syntax[65];
@@ -183,12 +186,15 @@ typedef struct dicom_reader {
     snow_seekable *inner_store;
 } dicom_reader;
 
-/* Parses a file up to its pixels, or including those of an image.  In the first
+/* Parses a file, of a path or, where that is NULL, of a store that outlives the
+ * reader, up to its pixels, or including those of an image.  In the first
  * case pixels that are cut are no error, but its message is there.  Errors:
  * SNOW_STATUS_BAD_INPUT (a value longer than the file, too deeply nested
- * sequences, compressed pixels without an end), SNOW_STATUS_NO_MEMORY. */
-snow_status snow_dicom_open(snow_context *context, snow_seekable *store,
-                            const dicom_image *image, dicom_reader *out);
+ * sequences, compressed pixels without an end), SNOW_STATUS_NO_MEMORY, those of
+ * opening. */
+snow_status snow_dicom_open(snow_context *context, const char *path,
+                            snow_seekable *given, const dicom_image *image,
+                            dicom_reader *out);
 void snow_dicom_close(dicom_reader *reader);
 
 /* --- deflated.c ----------------------------------------------------------- */
@@ -287,10 +293,10 @@ typedef struct dicom_stack {
     size_t *starts;      /* sparse: first frames of the places, and the end */
     dicom_slice *slices; /* NULL: one at each position */
     size_t slice_count;
-    bool gaps;      /* missing slices are allowed */
-    size_t missing; /* of the slices */
-    bool placed;    /* the matrix refers to a patient */
-    double normal[3];
+    bool gaps;        /* missing slices are allowed */
+    size_t missing;   /* of the slices */
+    bool placed;      /* the matrix refers to a patient */
+    double normal[3]; /* set before the distances are measured */
     double matrix[4][4];
     double gap_least, gap_most, gap; /* mm between positions; between slices */
     bool given;                      /* gap is given */
@@ -307,7 +313,7 @@ double snow_dicom_distance(const double a[3], const double b[3]);
 
 /* Measures the distances of neighbours along the normal, and makes even slices
  * between them if they are not on an even grid.  Errors: as below. */
-snow_status snow_dicom_space_slices(dicom_stack *stack, const double normal[3]);
+snow_status snow_dicom_space_slices(dicom_stack *stack);
 
 /* Orders the frames of a group and finds the positions of its slices, of which
  * some may be missing if `gaps` are allowed.  Gives no warnings.  Free with

@@ -130,26 +130,17 @@ static snow_status add_image(collection *c, dicom_reader *reader, char *path,
     return SNOW_STATUS_OK;
 }
 
-static snow_status add_store(collection *c, snow_seekable *store, char *path,
-                             const char *series) {
-    dicom_reader reader;
-    SNOW_TRY(snow_dicom_open(c->context, store, NULL, &reader));
-    snow_status status = add_image(c, &reader, path, series);
-    snow_dicom_close(&reader);
-    return status;
-}
-
+/* A path of NULL is the given file. */
 static snow_status add_path(collection *c, char *path, const char *series) {
-    snow_source *source;
-    snow_seekable *store = NULL;
-    SNOW_TRY(snow_source_open(c->context, path, &source));
-    snow_status status = snow_seekable_open(source, &store);
-    if (status == SNOW_STATUS_OK)
-        status = add_store(c, store, path, series);
-    if (status != SNOW_STATUS_OK)
+    dicom_reader reader;
+    snow_status status =
+        snow_dicom_open(c->context, path, c->store, NULL, &reader);
+    if (status == SNOW_STATUS_OK) {
+        status = add_image(c, &reader, path, series);
+        snow_dicom_close(&reader);
+    }
+    if (status != SNOW_STATUS_OK && path)
         snow_fail_in_file(c->context, status, path);
-    snow_seekable_close(store);
-    snow_source_close(source);
     return status;
 }
 
@@ -498,7 +489,7 @@ static snow_status read_dicom(snow_source *source,
     SNOW_TRY(snow_seekable_open(source, &store));
     c.store = store;
     bool done = false;
-    snow_status status = add_store(&c, store, NULL, NULL);
+    snow_status status = add_path(&c, NULL, NULL);
     if (status == SNOW_STATUS_OK && !c.frame_count)
         status = snow_fail(context, SNOW_STATUS_BAD_INPUT,
                            "is a DICOM file without an image; open one with "

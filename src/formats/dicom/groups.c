@@ -8,23 +8,24 @@
 /* Cosines are written with six digits, or fewer. */
 #define SAME_COSINE 1e-3
 
-/* By what their pixels are. */
+/* What the pixels of an image are, in numbers. */
+#define KINDS 8
+static void kind_of(const dicom_image *image, int64_t out[KINDS]) {
+    const int64_t kind[KINDS] = {
+        image->columns,   image->rows,
+        image->tiles,     image->tiles > 1 ? image->slices : 0,
+        image->samples,   image->allocated,
+        image->is_signed, image->segments};
+    memcpy(out, kind, sizeof kind);
+}
+
 static int compare_kinds(const dicom_image *a, const dicom_image *b) {
-    int by = snow_dicom_order((double)a->columns, (double)b->columns);
-    if (!by)
-        by = snow_dicom_order((double)a->rows, (double)b->rows);
-    if (!by)
-        by = a->tiles - b->tiles;
-    if (!by && a->tiles > 1)
-        by = snow_dicom_order((double)a->slices, (double)b->slices);
-    if (!by)
-        by = a->samples - b->samples;
-    if (!by)
-        by = a->allocated - b->allocated;
-    if (!by)
-        by = a->is_signed - b->is_signed;
-    if (!by)
-        by = (int)a->segments - (int)b->segments;
+    int64_t x[KINDS], y[KINDS];
+    int by = 0;
+    kind_of(a, x);
+    kind_of(b, y);
+    for (int i = 0; i < KINDS && !by; i++)
+        by = (x[i] > y[i]) - (x[i] < y[i]);
     if (!by && a->segments)
         by = strcmp(a->instance, b->instance); /* each has its own numbers */
     return by ? by : strcmp(a->photometric, b->photometric);

@@ -272,19 +272,13 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
 /* Normalizes the directions to length 1 and a right angle; with few printed
  * digits they are only approximately so. */
 static bool set_orientation(const double six[6], dicom_frame *frame) {
-    double across = 0;
     for (int k = 0; k < 2; k++) {
         double *to = k ? frame->column : frame->row;
-        double length =
-            sqrt(six[3 * k] * six[3 * k] + six[3 * k + 1] * six[3 * k + 1] +
-                 six[3 * k + 2] * six[3 * k + 2]);
-        if (!(fabs(length - 1) <= 0.01))
+        if (!(fabs(snow_length(six + 3 * k) - 1) <= 0.01))
             return false;
         memcpy(to, six + 3 * k, 3 * sizeof *to);
     }
-    for (int i = 0; i < 3; i++)
-        across += frame->row[i] * frame->column[i];
-    return fabs(across) <= 0.01;
+    return fabs(snow_dot(frame->row, frame->column)) <= 0.01;
 }
 
 /* Reads the frames' offsets in mm, or their slices' numbers, into the
@@ -336,10 +330,8 @@ static double offset_of(dicom_reader *reader, const dicom_image *image,
 
 /* In older files frames follow the first one along the normal. */
 static void move_along(dicom_frame *frame, double offset) {
-    const double *r = frame->row, *c = frame->column;
-    const double normal[3] = {r[1] * c[2] - r[2] * c[1],
-                              r[2] * c[0] - r[0] * c[2],
-                              r[0] * c[1] - r[1] * c[0]};
+    double normal[3];
+    snow_dicom_normal(frame, normal);
     for (int i = 0; i < 3; i++)
         frame->position[i] += offset * normal[i];
 }
@@ -462,7 +454,7 @@ snow_status snow_dicom_find_cut(const dicom_reader *reader,
     if (reader->cut || !reader->packed)
         return SNOW_STATUS_OK;
     snow_status status =
-        snow_dicom_open(reader->context, reader->store, image, &whole);
+        snow_dicom_open(reader->context, NULL, reader->file, image, &whole);
     *cut = status == SNOW_STATUS_BAD_INPUT;
     if (status == SNOW_STATUS_OK)
         snow_dicom_close(&whole);

@@ -166,9 +166,9 @@ snow_status snow_dicom_check_mosaic(snow_context *context,
 
 void snow_dicom_place_tile(const dicom_image *image, dicom_frame *frame) {
     const double *r = frame->row, *c = frame->column;
-    const double n[3] = {r[1] * c[2] - r[2] * c[1], r[2] * c[0] - r[0] * c[2],
-                         r[0] * c[1] - r[1] * c[0]};
-    const bool back = image->has_normal && snow_dicom_dot(n, image->normal) < 0;
+    double n[3];
+    snow_dicom_normal(frame, n);
+    const bool back = image->has_normal && snow_dot(n, image->normal) < 0;
     if (image->tiles < 2)
         return;
     frame->depth = fabs(frame->depth);

@@ -410,6 +410,8 @@ static snow_status keep_inflated(walk *w) {
 static snow_status walk_file(walk *w) {
     size_t have;
     dicom_reader *r = w->reader;
+    r->store = r->file;
+    w->size = snow_seekable_size(r->file);
     w->at = PREAMBLE;
     const unsigned char *at = look(w, &have);
     w->at = have >= 4 && !memcmp(at, "DICM", 4) ? PREAMBLE + 4 : 0;
@@ -429,17 +431,23 @@ static snow_status walk_file(walk *w) {
     return walk_set(w, how, UINT64_MAX, 0);
 }
 
-snow_status snow_dicom_open(snow_context *context, snow_seekable *store,
-                            const dicom_image *image, dicom_reader *out) {
-    dicom_reader reader = {.context = context, .store = store};
-    walk w = {
-        .reader = &reader, .stops = !image, .size = snow_seekable_size(store)};
+snow_status snow_dicom_open(snow_context *context, const char *path,
+                            snow_seekable *given, const dicom_image *image,
+                            dicom_reader *out) {
+    dicom_reader reader = {.context = context, .file = path ? NULL : given};
+    walk w = {.reader = &reader, .stops = !image};
+    snow_status status = SNOW_STATUS_OK;
+    if (path)
+        SNOW_TRY(snow_source_open(context, path, &reader.source));
+    if (path)
+        status = snow_seekable_open(reader.source, &reader.file);
     if (image && !snow_mul_u64(snow_dicom_frame_bytes(image),
                                (uint64_t)image->frames, &w.pixels))
         w.pixels = UINT64_MAX;
     if (image && image->allocated == 1)
         w.pixels = w.pixels / 8 + 1;
-    snow_status status = walk_file(&w);
+    if (status == SNOW_STATUS_OK)
+        status = walk_file(&w);
     if (status == SNOW_STATUS_OK && w.inflater)
         status = keep_inflated(&w);
     snow_dicom_inflate_end(w.inflater);
@@ -456,8 +464,10 @@ snow_status snow_dicom_open(snow_context *context, snow_seekable *store,
 
 void snow_dicom_close(dicom_reader *reader) {
     snow_seekable_close(reader->inner_store);
-    if (reader->inner)
-        snow_source_close(reader->inner);
+    snow_source_close(reader->inner);
+    if (reader->source)
+        snow_seekable_close(reader->file);
+    snow_source_close(reader->source);
     snow_release(reader->context, reader->offsets);
     snow_release(reader->context, reader->inflated);
     snow_release(reader->context, reader->elements);

@@ -40,7 +40,7 @@ static void color_of(const double lab[3], double rgb[3]) {
         xyz[i] = white[i] * (f[i] > 6.0 / 29 ? f[i] * f[i] * f[i]
                                              : (f[i] - 4.0 / 29) * 108 / 841);
     for (int i = 0; i < 3; i++) {
-        double c = fmin(fmax(snow_dicom_dot(to_linear[i], xyz), 0), 1);
+        double c = fmin(fmax(snow_dot(to_linear[i], xyz), 0), 1);
         rgb[i] = c > 0.0031308 ? 1.055 * pow(c, 1 / 2.4) - 0.055 : 12.92 * c;
     }
 }
@@ -251,15 +251,8 @@ static snow_status fill_volume(segmenter *s, snow_volume *volume) {
 static snow_status fill_from_file(const dicom_input *input, segmenter *s,
                                   snow_volume *volume) {
     const dicom_image *image = s->stack->frames->image;
-    snow_source *source = NULL;
-    snow_seekable *store = image->path ? NULL : input->store;
-    snow_status status = SNOW_STATUS_OK;
-    if (image->path)
-        status = snow_source_open(input->context, image->path, &source);
-    if (status == SNOW_STATUS_OK && image->path)
-        status = snow_seekable_open(source, &store);
-    if (status == SNOW_STATUS_OK)
-        status = snow_dicom_open(input->context, store, image, &s->reader);
+    snow_status status = snow_dicom_open(input->context, image->path,
+                                         input->store, image, &s->reader);
     if (status == SNOW_STATUS_OK) {
         status = read_labels(&s->reader, volume);
         if (status == SNOW_STATUS_OK)
@@ -268,11 +261,6 @@ static snow_status fill_from_file(const dicom_input *input, segmenter *s,
     }
     if (status != SNOW_STATUS_OK && image->path)
         snow_fail_in_file(input->context, status, image->path);
-    if (image->path) {
-        snow_seekable_close(store);
-        if (source)
-            snow_source_close(source);
-    }
     return status;
 }
 

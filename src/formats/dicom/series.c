@@ -106,8 +106,7 @@ static void fill_matrix(dicom_stack *s, const double step[3]) {
         snow_image_turn(s->matrix);
 }
 
-static void step_of_slices(dicom_stack *s, const double normal[3],
-                           double step[3]) {
+static void step_of_slices(dicom_stack *s, double step[3]) {
     if (s->places == 1 || !s->placed) {
         double depth = fabs(s->frames->depth);
         if (s->places == 1 && !(depth > 0)) /* there is no other */
@@ -115,7 +114,7 @@ static void step_of_slices(dicom_stack *s, const double normal[3],
         s->given = depth > 0;
         s->gap = s->given ? depth : 1;
         for (int i = 0; i < 3; i++)
-            step[i] = normal[i] * s->gap;
+            step[i] = s->normal[i] * s->gap;
         return;
     }
     const double *a = snow_dicom_position(s, 0),
@@ -129,24 +128,17 @@ static void step_of_slices(dicom_stack *s, const double normal[3],
 static void order_frames(ranked *all, size_t count, const double normal[3]) {
     bool placed = all[0].frame.placed;
     for (size_t i = 0; i < count; i++)
-        all[i].along =
-            placed ? snow_dicom_dot(all[i].frame.position, normal) : 0;
+        all[i].along = placed ? snow_dot(all[i].frame.position, normal) : 0;
     qsort(all, count, sizeof *all, by_place);
 }
 
 static snow_status lay_stack(dicom_stack *s, dicom_frame *frames, ranked *all,
                              size_t count) {
-    double normal[3], step[3];
+    double step[3];
     for (size_t i = 0; i < count; i++)
         all[i].frame = frames[i];
-    normal[0] = frames[0].row[1] * frames[0].column[2] -
-                frames[0].row[2] * frames[0].column[1];
-    normal[1] = frames[0].row[2] * frames[0].column[0] -
-                frames[0].row[0] * frames[0].column[2];
-    normal[2] = frames[0].row[0] * frames[0].column[1] -
-                frames[0].row[1] * frames[0].column[0];
-    memcpy(s->normal, normal, sizeof normal);
-    order_frames(all, count, normal);
+    snow_dicom_normal(frames, s->normal);
+    order_frames(all, count, s->normal);
     s->placed = frames[0].placed;
     s->times = 1;
     s->places = s->placed ? 0 : count;
@@ -156,10 +148,10 @@ static snow_status lay_stack(dicom_stack *s, dicom_frame *frames, ranked *all,
         frames[i] = all[i].frame;
     s->frames = frames;
     if (s->placed && s->places > 1)
-        SNOW_TRY(snow_dicom_space_slices(s, normal));
+        SNOW_TRY(snow_dicom_space_slices(s));
     if (!s->slices)
         s->slice_count = s->places;
-    step_of_slices(s, normal, step);
+    step_of_slices(s, step);
     fill_matrix(s, step);
     return SNOW_STATUS_OK;
 }

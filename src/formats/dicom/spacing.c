@@ -20,12 +20,21 @@
 
 double snow_dicom_distance(const double a[3], const double b[3]) {
     const double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    return sqrt(snow_dicom_dot(d, d));
+    return snow_length(d);
 }
 
-static double gap_at(const dicom_stack *s, const double normal[3], size_t i) {
-    return snow_dicom_dot(snow_dicom_position(s, i + 1), normal) -
-           snow_dicom_dot(snow_dicom_position(s, i), normal);
+/* A place along the normal. */
+static double place_of(const dicom_stack *s, size_t i) {
+    return snow_dot(snow_dicom_position(s, i), s->normal);
+}
+
+static double gap_at(const dicom_stack *s, size_t i) {
+    return place_of(s, i + 1) - place_of(s, i);
+}
+
+/* From the first position to the last. */
+static double length_of(const dicom_stack *s) {
+    return place_of(s, s->places - 1) - place_of(s, 0);
 }
 
 static int by_size(const void *a, const void *b) {
@@ -33,14 +42,13 @@ static int by_size(const void *a, const void *b) {
 }
 
 /* The median gap. */
-static snow_status usual_gap(const dicom_stack *s, const double normal[3],
-                             double *out) {
+static snow_status usual_gap(const dicom_stack *s, double *out) {
     size_t count = s->places - 1;
     double *gaps = snow_allocate_array(s->context, count, sizeof *gaps);
     if (!gaps)
         return SNOW_STATUS_NO_MEMORY;
     for (size_t i = 0; i < count; i++)
-        gaps[i] = gap_at(s, normal, i);
+        gaps[i] = gap_at(s, i);
     qsort(gaps, count, sizeof *gaps, by_size);
     *out = gaps[(count - 1) / 2];
     snow_release(s->context, gaps);
@@ -61,13 +69,13 @@ static double most_slices(const dicom_stack *s) {
 /* Finds a single gap of twice or three times the usual one between usual ones:
  * a missing slice; two in a row are how the slices were acquired.  `*found` is
  * the number of places if there is none. */
-static snow_status find_missing(const dicom_stack *s, const double normal[3],
-                                double *usual, size_t *found) {
+static snow_status find_missing(const dicom_stack *s, double *usual,
+                                size_t *found) {
     double before = 1;
     *found = s->places;
-    SNOW_TRY(usual_gap(s, normal, usual));
+    SNOW_TRY(usual_gap(s, usual));
     for (size_t i = 0; i + 1 < s->places && s->places >= 4; i++) {
-        double times = multiple(gap_at(s, normal, i), *usual);
+        double times = multiple(gap_at(s, i), *usual);
         if (times < 1 || (times > 1 && before > 1)) {
             *found = s->places;
             return SNOW_STATUS_OK;
@@ -79,9 +87,9 @@ static snow_status find_missing(const dicom_stack *s, const double normal[3],
     return SNOW_STATUS_OK;
 }
 
-static snow_status refuse_missing(const dicom_stack *s, const double normal[3],
-                                  double usual, size_t found) {
-    double gap = gap_at(s, normal, found);
+static snow_status refuse_missing(const dicom_stack *s, double usual,
+                                  size_t found) {
+    double gap = gap_at(s, found);
     double lost = multiple(gap, usual) - 1;
     const dicom_frame *low = &s->frames[found * s->times];
     const dicom_frame *high = &s->frames[(found + 1) * s->times];
@@ -97,14 +105,12 @@ static snow_status refuse_missing(const dicom_stack *s, const double normal[3],
 
 /* The number of slices if the missing ones were there, 0 if the others do not
  * lie on an even grid then, or if it is too large. */
-static size_t full_count(const dicom_stack *s, const double normal[3],
-                         double usual) {
-    double first = snow_dicom_dot(snow_dicom_position(s, 0), normal);
-    double all =
-        snow_dicom_dot(snow_dicom_position(s, s->places - 1), normal) - first;
+static size_t full_count(const dicom_stack *s, double usual) {
+    double first = place_of(s, 0);
+    double all = length_of(s);
     double steps = 0, at = 0;
     for (size_t i = 0; i + 1 < s->places; i++) {
-        double times = multiple(gap_at(s, normal, i), usual);
+        double times = multiple(gap_at(s, i), usual);
         if (!(times >= 1))
             return 0;
         steps += times;
@@ -112,27 +118,24 @@ static size_t full_count(const dicom_stack *s, const double normal[3],
     if (!(steps < most_slices(s)))
         return 0;
     for (size_t i = 0; i + 1 < s->places; i++) {
-        double off = snow_dicom_dot(snow_dicom_position(s, i), normal) - first -
-                     at * all / steps;
+        double off = place_of(s, i) - first - at * all / steps;
         if (fabs(off) > SAME_GAP * all / steps)
             return 0;
-        at += multiple(gap_at(s, normal, i), usual);
+        at += multiple(gap_at(s, i), usual);
     }
     return (size_t)steps + 1;
 }
 
 /* Makes a slice of each position, and one without values where one is
  * missing: what lies there is not known. */
-static snow_status leave_gaps(dicom_stack *s, const double normal[3],
-                              double usual, size_t count) {
+static snow_status leave_gaps(dicom_stack *s, double usual, size_t count) {
     size_t n = 0;
     s->slices = snow_allocate_array(s->context, count, sizeof *s->slices);
     if (!s->slices)
         return SNOW_STATUS_NO_MEMORY;
     for (size_t i = 0; i < s->places; i++) {
-        size_t next = i + 1 < s->places
-                          ? (size_t)multiple(gap_at(s, normal, i), usual)
-                          : 1;
+        size_t next =
+            i + 1 < s->places ? (size_t)multiple(gap_at(s, i), usual) : 1;
         s->slices[n++] = (dicom_slice){i, i, 0};
         while (--next)
             s->slices[n++] = (dicom_slice){i, i + 1, NAN};
@@ -145,18 +148,14 @@ static snow_status leave_gaps(dicom_stack *s, const double normal[3],
 
 /* The largest snow_dicom_distance of a position from its place on the line from
  * the first to the last at `share` of it; along the line, or only across it. */
-static double farthest(const dicom_stack *s, const double normal[3],
-                       bool beside) {
+static double farthest(const dicom_stack *s, bool beside) {
     const double *a = snow_dicom_position(s, 0),
                  *b = snow_dicom_position(s, s->places - 1);
-    double all = snow_dicom_dot(b, normal) - snow_dicom_dot(a, normal),
-           most = 0;
+    double all = length_of(s), most = 0;
     for (size_t i = 0; i < s->places; i++) {
         const double *p = snow_dicom_position(s, i);
-        double share =
-            beside
-                ? (snow_dicom_dot(p, normal) - snow_dicom_dot(a, normal)) / all
-                : (double)i / (double)(s->places - 1);
+        double share = beside ? (place_of(s, i) - place_of(s, 0)) / all
+                              : (double)i / (double)(s->places - 1);
         double want[3];
         for (int k = 0; k < 3; k++)
             want[k] = a[k] + share * (b[k] - a[k]);
@@ -168,10 +167,9 @@ static double farthest(const dicom_stack *s, const double normal[3],
 
 /* Makes slices at even distances from the first position to the last, as close
  * as the closest positions. */
-static snow_status even_out(dicom_stack *s, const double normal[3]) {
-    double first = snow_dicom_dot(snow_dicom_position(s, 0), normal);
-    double all =
-        snow_dicom_dot(snow_dicom_position(s, s->places - 1), normal) - first;
+static snow_status even_out(dicom_stack *s) {
+    double first = place_of(s, 0);
+    double all = length_of(s);
     double steps = ceil(all / s->gap_least - 1e-3);
     if (!(steps < most_slices(s)))
         return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
@@ -187,11 +185,10 @@ static snow_status even_out(dicom_stack *s, const double normal[3]) {
     size_t low = 0;
     for (size_t i = 0; i < s->slice_count; i++) {
         double at = first + s->gap * (double)i;
-        while (low + 2 < s->places &&
-               snow_dicom_dot(snow_dicom_position(s, low + 1), normal) <= at)
+        while (low + 2 < s->places && place_of(s, low + 1) <= at)
             low++;
-        double below = snow_dicom_dot(snow_dicom_position(s, low), normal);
-        double weight = (at - below) / gap_at(s, normal, low);
+        double below = place_of(s, low);
+        double weight = (at - below) / gap_at(s, low);
         weight = weight < 1e-9 ? 0 : weight > 1 - 1e-9 ? 1 : weight;
         s->slices[i] = (dicom_slice){low, low + 1, weight};
     }
@@ -200,13 +197,13 @@ static snow_status even_out(dicom_stack *s, const double normal[3]) {
 
 /* Empties slices that are farther from any position than positions usually are
  * from one another: nothing says that a segment reaches as far. */
-static snow_status empty_far(dicom_stack *s, const double normal[3]) {
+static snow_status empty_far(dicom_stack *s) {
     double usual;
-    SNOW_TRY(usual_gap(s, normal, &usual));
+    SNOW_TRY(usual_gap(s, &usual));
     for (size_t i = 0; i < s->slice_count; i++) {
         dicom_slice *slice = &s->slices[i];
         double nearer = fmin(slice->weight, 1 - slice->weight);
-        if (nearer * gap_at(s, normal, slice->low) > usual)
+        if (nearer * gap_at(s, slice->low) > usual)
             slice->weight = NAN;
     }
     return SNOW_STATUS_OK;
@@ -214,34 +211,30 @@ static snow_status empty_far(dicom_stack *s, const double normal[3]) {
 
 /* Segments need only have the slices that are not empty. The distance is the
  * given one, or that of the closest two, if all lie on its grid. */
-static snow_status space_sparse(dicom_stack *s, const double normal[3]) {
+static snow_status space_sparse(dicom_stack *s) {
     const double steps[2] = {fabs(s->frames->depth), s->gap_least};
     for (int i = 0; i < 2; i++) {
-        size_t count = steps[i] > 0 ? full_count(s, normal, steps[i]) : 0;
+        size_t count = steps[i] > 0 ? full_count(s, steps[i]) : 0;
         if (count)
             return count == s->places ? SNOW_STATUS_OK
-                                      : leave_gaps(s, normal, steps[i], count);
+                                      : leave_gaps(s, steps[i], count);
     }
-    SNOW_TRY(even_out(s, normal));
-    return empty_far(s, normal);
+    SNOW_TRY(even_out(s));
+    return empty_far(s);
 }
 
-/* Measures the distances of neighbours, and decides whether an even grid
- * fits. */
-snow_status snow_dicom_space_slices(dicom_stack *s, const double normal[3]) {
-    double all = snow_dicom_dot(snow_dicom_position(s, s->places - 1), normal) -
-                 snow_dicom_dot(snow_dicom_position(s, 0), normal);
-    s->gap = all / (double)(s->places - 1);
-    s->gap_least = s->gap_most = gap_at(s, normal, 0);
+snow_status snow_dicom_space_slices(dicom_stack *s) {
+    s->gap = length_of(s) / (double)(s->places - 1);
+    s->gap_least = s->gap_most = gap_at(s, 0);
     for (size_t i = 1; i + 1 < s->places; i++) {
-        double gap = gap_at(s, normal, i);
+        double gap = gap_at(s, i);
         s->gap_least = gap < s->gap_least ? gap : s->gap_least;
         s->gap_most = gap > s->gap_most ? gap : s->gap_most;
     }
     s->given = true;
-    if (!s->starts && farthest(s, normal, false) <= EVEN * s->gap)
+    if (!s->starts && farthest(s, false) <= EVEN * s->gap)
         return SNOW_STATUS_OK;
-    double beside = farthest(s, normal, true);
+    double beside = farthest(s, true);
     if (!(beside <= snow_dicom_smallest_pixel(s->frames) / 2) &&
         !(beside <= EVEN * s->gap_least))
         return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
@@ -249,13 +242,13 @@ snow_status snow_dicom_space_slices(dicom_stack *s, const double normal[3]) {
                          "line from the first to the last; open a part of them",
                          beside);
     if (s->starts)
-        return space_sparse(s, normal);
+        return space_sparse(s);
     double usual;
     size_t found;
-    SNOW_TRY(find_missing(s, normal, &usual, &found));
+    SNOW_TRY(find_missing(s, &usual, &found));
     if (found == s->places)
-        return even_out(s, normal);
-    size_t count = s->gaps ? full_count(s, normal, usual) : 0;
-    return count ? leave_gaps(s, normal, usual, count)
-                 : refuse_missing(s, normal, usual, found);
+        return even_out(s);
+    size_t count = s->gaps ? full_count(s, usual) : 0;
+    return count ? leave_gaps(s, usual, count)
+                 : refuse_missing(s, usual, found);
 }

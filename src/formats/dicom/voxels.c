@@ -26,8 +26,6 @@ typedef struct plane {
 typedef struct decoder {
     const dicom_input *input;
     const dicom_image *image; /* the image whose file is open; NULL: none */
-    snow_source *source;      /* NULL: the given file's store is read */
-    snow_seekable *store;
     dicom_reader reader;
     dicom_palette palette; /* of the open file */
     unsigned char *bytes;  /* of a frame */
@@ -46,13 +44,7 @@ static void close_image(decoder *d) {
         snow_dicom_close(&d->reader);
     snow_release(d->input->context, d->palette.levels);
     d->palette = (dicom_palette){0};
-    if (d->source) {
-        snow_seekable_close(d->store);
-        snow_source_close(d->source);
-    }
     d->image = NULL;
-    d->source = NULL;
-    d->store = NULL;
 }
 
 static bool has_palette(const dicom_image *image) {
@@ -65,12 +57,8 @@ static snow_status open_image(decoder *d, const dicom_image *image) {
     if (d->image == image)
         return SNOW_STATUS_OK;
     close_image(d);
-    d->store = image->path ? NULL : d->input->store;
-    if (image->path) {
-        SNOW_TRY(snow_source_open(context, image->path, &d->source));
-        SNOW_TRY(snow_seekable_open(d->source, &d->store));
-    }
-    SNOW_TRY(snow_dicom_open(context, d->store, image, &d->reader));
+    SNOW_TRY(snow_dicom_open(context, image->path, d->input->store, image,
+                             &d->reader));
     d->image = image;
     return has_palette(image)
                ? snow_dicom_palette_read(&d->reader, image, &d->palette)
@@ -324,7 +312,7 @@ static snow_status stored_type(snow_context *context, const dicom_image *image,
 
 /* A frame's place along the normal, in mm, as in SliceLocation. */
 static double height(const dicom_stack *stack, const dicom_frame *frame) {
-    return snow_dicom_dot(frame->position, stack->normal);
+    return snow_dot(frame->position, stack->normal);
 }
 
 /* Names each gap by the slices around it. */
