@@ -90,6 +90,22 @@ typedef struct index_xml {
 snow_status snow_index_parse(snow_source *source, const index_xml *handlers,
                              void *user);
 
+/* A text of XML, whose bytes come from `next`, which gives none at its end. */
+typedef struct index_text {
+    snow_context *context;
+    const index_xml *handlers;
+    void *user;
+    snow_status (*next)(void *from, char *bytes, size_t size, size_t *got);
+    void *from;
+    const char *before; /* tags before its bytes, which are open; NULL: none */
+    const char *where;  /* it is, for messages; NULL: their line */
+    uint64_t at, end;   /* of the tag whose `begin` is called */
+    bool done;          /* set by these functions: no more is wanted */
+} index_text;
+
+/* Errors as above. */
+snow_status snow_index_parse_text(index_text *text);
+
 /* An attribute's value, NULL if it is missing. */
 const char *snow_index_attribute(const char **attributes, const char *name);
 

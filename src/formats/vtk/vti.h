@@ -37,9 +37,8 @@ typedef struct vti_header {
     bool one_piece; /* set before: the first piece is all that is wanted */
 } vti_header;
 
-/* An attribute's value, NULL if it is missing; "x0 x1 y0 y1 z0 z1", the first
- * and last index on each axis, false for anything else. */
-const char *snow_vti_attribute(const char **attributes, const char *name);
+/* "x0 x1 y0 y1 z0 z1", the first and last index on each axis; false for
+ * anything else. */
 bool snow_vti_take_extent(const char *value, int64_t first[3],
                           int64_t points[3]);
 

@@ -8,12 +8,9 @@
  * its scalars, otherwise the first; arrays of points have priority over those
  * of cells. */
 #include "formats/bytes/lz4.h"
-#include "formats/features.h"
+#include "formats/index/index.h"
 #include "formats/vtk/vti.h"
 
-#if SNOW_HAVE_EXPAT
-
-#include <expat.h>
 #include <string.h>
 
 /* Limit for sums of indices, far above any grid. */
@@ -26,10 +23,10 @@ typedef struct vti_text {
     snow_context *context;
     const snow_volume_options *options;
     vti_header *header;
-    XML_Parser parser;
-    snow_status status; /* why the parser was stopped */
-    bool done;          /* ... successfully, at the data */
-    uint64_t end;       /* end of the tag before them, in bytes of the text */
+    snow_source *source;
+    size_t ahead;   /* bytes of it that the parser has, but are not consumed */
+    uint64_t fed;   /* those before them */
+    index_text xml; /* done at the data */
     bool file, grid, piece; /* these elements were found */
     bool ignored;           /* inside a later piece */
     bool points, cells;     /* inside PointData, CellData */
@@ -39,24 +36,8 @@ typedef struct vti_text {
     char seen[512];         /* names of arrays so far, for messages */
 } vti_text;
 
-const char *snow_vti_attribute(const char **attributes, const char *name) {
-    for (; *attributes; attributes += 2)
-        if (!strcmp(*attributes, name))
-            return attributes[1];
-    return NULL;
-}
-
-/* Stops the parser: with SNOW_STATUS_OK at the data. */
-static void stop(vti_text *text, snow_status status) {
-    text->status = status;
-    text->done = status == SNOW_STATUS_OK;
-    text->end = (uint64_t)XML_GetCurrentByteIndex(text->parser) +
-                (uint64_t)XML_GetCurrentByteCount(text->parser);
-    XML_StopParser(text->parser, XML_FALSE);
-}
-
-static void fail_header(vti_text *text, const char *reason) {
-    stop(text, snow_fail(text->context, SNOW_STATUS_BAD_INPUT, "%s", reason));
+static snow_status fail_header(const vti_text *text, const char *reason) {
+    return snow_fail(text->context, SNOW_STATUS_BAD_INPUT, "%s", reason);
 }
 
 /* Splits off the next word of a text of numbers; returns false at the end. */
@@ -105,9 +86,9 @@ bool snow_vti_take_extent(const char *value, int64_t first[3],
 static const char lz4_name[] = "vtkLZ4DataCompressor";
 
 void snow_vti_file_form(vti_header *header, const char **attributes) {
-    const char *order = snow_vti_attribute(attributes, "byte_order");
-    const char *count = snow_vti_attribute(attributes, "header_type");
-    const char *compressor = snow_vti_attribute(attributes, "compressor");
+    const char *order = snow_index_attribute(attributes, "byte_order");
+    const char *count = snow_index_attribute(attributes, "header_type");
+    const char *compressor = snow_index_attribute(attributes, "compressor");
     header->big_endian = order && !strcmp(order, "BigEndian");
     header->count_bytes = count && !strcmp(count, "UInt64") ? 8 : 4;
     header->packed = compressor && *compressor;
@@ -115,41 +96,44 @@ void snow_vti_file_form(vti_header *header, const char **attributes) {
         header->unpack = snow_lz4_unpack;
 }
 
-static void begin_file(vti_text *text, const char **attributes) {
-    const char *type = snow_vti_attribute(attributes, "type");
-    const char *compressor = snow_vti_attribute(attributes, "compressor");
+static snow_status begin_file(vti_text *text, const char **attributes) {
+    const char *type = snow_index_attribute(attributes, "type");
+    const char *compressor = snow_index_attribute(attributes, "compressor");
     const char *wanted =
         text->header->grid.rectilinear ? "RectilinearGrid" : "ImageData";
     text->file = true;
     snow_vti_file_form(text->header, attributes);
     if (!type || strcmp(type, wanted) != 0)
-        fail_header(text, snow_vtk_other(type));
-    else if (text->header->unpack) {
-        if (snow_lz4_need(text->context) != SNOW_STATUS_OK)
-            stop(text, SNOW_STATUS_BAD_INPUT);
-    } else if (text->header->packed &&
-               strcmp(compressor, "vtkZLibDataCompressor") != 0)
-        fail_header(text, "its data are compressed neither by zlib nor LZ4; "
-                          "write it again with vtkZLibDataCompressor or "
-                          "without compression");
+        return fail_header(text, snow_vtk_other(type));
+    if (text->header->unpack)
+        return snow_lz4_need(text->context);
+    if (text->header->packed &&
+        strcmp(compressor, "vtkZLibDataCompressor") != 0)
+        return fail_header(text,
+                           "its data are compressed neither by zlib nor LZ4; "
+                           "write it again with vtkZLibDataCompressor or "
+                           "without compression");
+    return SNOW_STATUS_OK;
 }
 
-static void begin_grid(vti_text *text, const char **attributes) {
+static snow_status begin_grid(vti_text *text, const char **attributes) {
     vtk_grid *grid = &text->header->grid;
     double direction[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     text->grid = true;
-    if (!snow_vti_take_extent(snow_vti_attribute(attributes, "WholeExtent"),
+    if (!snow_vti_take_extent(snow_index_attribute(attributes, "WholeExtent"),
                               grid->first, grid->points) ||
-        !take_reals(snow_vti_attribute(attributes, "Origin"), 3,
+        !take_reals(snow_index_attribute(attributes, "Origin"), 3,
                     grid->origin) ||
-        !take_reals(snow_vti_attribute(attributes, "Spacing"), 3,
+        !take_reals(snow_index_attribute(attributes, "Spacing"), 3,
                     grid->spacing) ||
-        !take_reals(snow_vti_attribute(attributes, "Direction"), 9, direction))
-        fail_header(text,
-                    "its WholeExtent, Origin, Spacing or Direction is empty "
-                    "or not a row of numbers; write the file again");
+        !take_reals(snow_index_attribute(attributes, "Direction"), 9,
+                    direction))
+        return fail_header(
+            text, "its WholeExtent, Origin, Spacing or Direction is empty "
+                  "or not a row of numbers; write the file again");
     for (int i = 0; i < 9; i++)
         grid->direction[i / 3][i % 3] = direction[i];
+    return SNOW_STATUS_OK;
 }
 
 /* The text ended before any usable data. */
@@ -170,19 +154,16 @@ static snow_status fail_unfound(const vti_text *text) {
 
 /* A piece that does not span the whole is one of several, each of which is read
  * by itself; later ones are not looked at then. */
-static void begin_piece(vti_text *text, const char **attributes) {
+static snow_status begin_piece(vti_text *text, const char **attributes) {
     vti_header *header = text->header;
     vtk_grid *grid = &header->grid;
     int64_t first[3], points[3];
     text->ignored = text->piece; /* the one before was taken */
-    if (text->ignored) {
-        if (!text->choice)
-            stop(text, fail_unfound(text));
-        return;
-    }
+    if (text->ignored)
+        return text->choice ? SNOW_STATUS_OK : fail_unfound(text);
     const bool valid =
         text->grid &&
-        snow_vti_take_extent(snow_vti_attribute(attributes, "Extent"), first,
+        snow_vti_take_extent(snow_index_attribute(attributes, "Extent"), first,
                              points);
     text->piece = true;
     if (header->one_piece && valid) {
@@ -190,19 +171,18 @@ static void begin_piece(vti_text *text, const char **attributes) {
         memcpy(grid->points, points, sizeof points);
     } else if (!valid || memcmp(first, grid->first, sizeof first) != 0 ||
                memcmp(points, grid->points, sizeof points) != 0) {
-        header->in_pieces = text->grid && !grid->rectilinear;
-        if (header->in_pieces)
-            stop(text, SNOW_STATUS_OK);
-        else
-            fail_header(text,
-                        "has no piece that spans the WholeExtent; write the "
-                        "whole grid to one file");
+        header->in_pieces = text->xml.done = text->grid && !grid->rectilinear;
+        if (!header->in_pieces)
+            return fail_header(
+                text, "has no piece that spans the WholeExtent; write the "
+                      "whole grid to one file");
     }
+    return SNOW_STATUS_OK;
 }
 
 static void begin_section(vti_text *text, const char **attributes,
                           bool points) {
-    const char *scalars = snow_vti_attribute(attributes, "Scalars");
+    const char *scalars = snow_index_attribute(attributes, "Scalars");
     text->points = points && !text->ignored;
     text->cells = !points && !text->ignored;
     *text->scalars = 0;
@@ -244,13 +224,14 @@ static snow_type type_named(const char *name) {
 
 bool snow_vti_keep_array(vti_header *header, const char **attributes,
                          const char *name, bool cells) {
-    const char *form = snow_vti_attribute(attributes, "format");
-    const char *channels = snow_vti_attribute(attributes, "NumberOfComponents");
-    const char *offset = snow_vti_attribute(attributes, "offset");
+    const char *form = snow_index_attribute(attributes, "format");
+    const char *channels =
+        snow_index_attribute(attributes, "NumberOfComponents");
+    const char *offset = snow_index_attribute(attributes, "offset");
     int64_t at = 0;
     header->array = (vtk_array){
         .cells = cells,
-        .type = type_named(snow_vti_attribute(attributes, "type")),
+        .type = type_named(snow_index_attribute(attributes, "type")),
         .channels = 1,
     };
     if (strlen(name) >= sizeof header->array.name || !form)
@@ -273,158 +254,109 @@ bool snow_vti_keep_array(vti_header *header, const char **attributes,
            header->array.channels >= 1;
 }
 
-static void begin_array(vti_text *text, const char **attributes) {
-    const char *name = snow_vti_attribute(attributes, "Name");
+static snow_status begin_array(vti_text *text, const char **attributes) {
+    const char *name = snow_index_attribute(attributes, "Name");
     if (!text->points && !text->cells)
-        return;
+        return SNOW_STATUS_OK;
     if (!name)
         name = "";
     int choice = judge(text, name);
     text->any_points = text->any_points || text->points;
     remember(text, name);
     if (choice <= text->choice)
-        return;
-    if (!snow_vti_keep_array(text->header, attributes, name, text->cells)) {
-        if (choice == WANTED)
-            fail_header(text,
-                        "its array has an unknown type, format, offset or "
-                        "number of components; choose another with --dataset");
-        return;
-    }
+        return SNOW_STATUS_OK;
+    if (!snow_vti_keep_array(text->header, attributes, name, text->cells))
+        return choice != WANTED
+                   ? SNOW_STATUS_OK
+                   : fail_header(text, "its array has an unknown type, format, "
+                                       "offset or number of components; choose "
+                                       "another with --dataset");
     /* Data in the element can be read only now, although better arrays may
      * follow. */
-    if (text->header->form != VTI_APPENDED && choice != WANTED)
-        return;
-    text->choice = choice;
-    if (text->header->form != VTI_APPENDED)
-        stop(text, SNOW_STATUS_OK);
+    const bool here = text->header->form != VTI_APPENDED;
+    if (!here || choice == WANTED)
+        text->choice = choice;
+    text->xml.done = here && choice == WANTED;
+    return SNOW_STATUS_OK;
 }
 
-static void XMLCALL begin_element(void *user, const char *name,
-                                  const char **attributes) {
+static snow_status begin_appended(vti_text *text, const char **attributes) {
+    const char *encoding = snow_index_attribute(attributes, "encoding");
+    text->header->raw = encoding && !strcmp(encoding, "raw");
+    if (!text->header->raw && (!encoding || strcmp(encoding, "base64") != 0))
+        return fail_header(text,
+                           "its appended data are neither raw nor base64; "
+                           "write the file again");
+    text->xml.done = text->choice;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status begin_element(void *user, const char *name,
+                                 const char **attributes) {
     vti_text *text = user;
-    if (text->status != SNOW_STATUS_OK || text->done)
-        return;
-    if (!text->file && strcmp(name, "VTKFile") != 0)
-        fail_header(text, "is XML, but not a VTK file; give a .vti file");
-    else if (!strcmp(name, "VTKFile"))
-        begin_file(text, attributes);
-    else if (!strcmp(name, "ImageData") || !strcmp(name, "RectilinearGrid"))
-        begin_grid(text, attributes);
-    else if (!strcmp(name, "Piece"))
-        begin_piece(text, attributes);
-    else if (!strcmp(name, "PointData") && text->piece)
-        begin_section(text, attributes, true);
-    else if (!strcmp(name, "CellData") && text->piece)
-        begin_section(text, attributes, false);
-    else if (!strcmp(name, "DataArray"))
-        begin_array(text, attributes);
-    else if (!strcmp(name, "AppendedData")) {
-        const char *encoding = snow_vti_attribute(attributes, "encoding");
-        text->header->raw = encoding && !strcmp(encoding, "raw");
-        if (!text->header->raw &&
-            (!encoding || strcmp(encoding, "base64") != 0))
-            fail_header(
-                text, "its appended data are neither raw nor base64; write the "
-                      "file again");
-        else if (text->choice)
-            stop(text, SNOW_STATUS_OK);
-    }
+    if (!strcmp(name, "VTKFile"))
+        return begin_file(text, attributes);
+    if (!text->file)
+        return fail_header(text,
+                           "is XML, but not a VTK file; give a .vti file");
+    if (!strcmp(name, "ImageData") || !strcmp(name, "RectilinearGrid"))
+        return begin_grid(text, attributes);
+    if (!strcmp(name, "Piece"))
+        return begin_piece(text, attributes);
+    if (!strcmp(name, "DataArray"))
+        return begin_array(text, attributes);
+    if (!strcmp(name, "AppendedData"))
+        return begin_appended(text, attributes);
+    const bool points = !strcmp(name, "PointData");
+    if (text->piece && (points || !strcmp(name, "CellData")))
+        begin_section(text, attributes, points);
+    return SNOW_STATUS_OK;
 }
 
-static void XMLCALL end_element(void *user, const char *name) {
+static snow_status end_element(void *user, const char *name) {
     vti_text *text = user;
     if (!strcmp(name, "PointData"))
         text->points = false;
     else if (!strcmp(name, "CellData"))
         text->cells = false;
-}
-
-/* Entities could expand a small file without bound; VTK writes none. */
-static void XMLCALL begin_doctype(void *user, const char *name,
-                                  const char *system, const char *public,
-                                  int inner) {
-    (void)name;
-    (void)system;
-    (void)public;
-    (void)inner;
-    fail_header(user, "has a document type declaration, which VTK files do not "
-                      "have; remove it");
-}
-
-static snow_status fail_syntax(const vti_text *text) {
-    return snow_fail(
-        text->context, SNOW_STATUS_BAD_INPUT,
-        "its XML is damaged in line %lu (%s); get or write the file again",
-        (unsigned long)XML_GetCurrentLineNumber(text->parser),
-        XML_ErrorString(XML_GetErrorCode(text->parser)));
+    return SNOW_STATUS_OK;
 }
 
 /* The parser sees bytes before they are consumed; they are consumed only up to
  * the end of the tag before the data. */
-static snow_status feed(snow_source *source, vti_text *text) {
-    uint64_t fed = 0;
-    for (;;) {
-        char bytes[SNOW_PEEK_BYTES];
-        size_t got;
-        SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &got));
-        enum XML_Status answer =
-            XML_Parse(text->parser, bytes, (int)got, got == 0);
-        if (text->status != SNOW_STATUS_OK)
-            return text->status;
-        text->header->numbers = text->end;
-        if (text->done)
-            return snow_source_skip(source, text->end - fed, "the header");
-        if (answer != XML_STATUS_OK)
-            return XML_GetErrorCode(text->parser) == XML_ERROR_NO_MEMORY
-                       ? snow_fail(text->context, SNOW_STATUS_NO_MEMORY,
-                                   "out of memory to read XML")
-                       : fail_syntax(text);
-        if (!got)
-            return fail_unfound(text);
-        SNOW_TRY(snow_source_skip(source, got, "the header"));
-        fed += got;
-        XML_Index at = XML_GetCurrentByteIndex(text->parser);
-        if (at >= 0 && fed - (uint64_t)at > SNOW_XML_TAG_BYTES)
-            return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
-                             "has a tag of more than %llu bytes; it is damaged "
-                             "or not a VTI file",
-                             (unsigned long long)SNOW_XML_TAG_BYTES);
-    }
+static snow_status next_bytes(void *user, char *bytes, size_t size,
+                              size_t *got) {
+    vti_text *text = user;
+    SNOW_TRY(snow_source_skip(text->source, text->ahead, "the header"));
+    text->fed += text->ahead;
+    SNOW_TRY(snow_source_peek(text->source, bytes, size, got));
+    text->ahead = *got;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_vti_read_header(snow_source *source,
                                  const snow_volume_options *options,
                                  vti_header *header) {
+    static const index_xml handlers = {.begin = begin_element,
+                                       .end = end_element};
     snow_context *context = snow_source_context(source);
-    vti_text text = {.context = context, .options = options, .header = header};
+    vti_text text = {.context = context,
+                     .options = options,
+                     .header = header,
+                     .source = source,
+                     .xml = {.context = context,
+                             .handlers = &handlers,
+                             .user = &text,
+                             .next = next_bytes,
+                             .from = &text}};
     const bool rectilinear = header->grid.rectilinear;
     const bool one_piece = header->one_piece;
     *header =
         (vti_header){.grid = snow_vtk_grid_default(), .one_piece = one_piece};
     header->grid.rectilinear = rectilinear;
-    text.parser = XML_ParserCreate(NULL);
-    if (!text.parser)
-        return snow_fail(context, SNOW_STATUS_NO_MEMORY,
-                         "out of memory to read XML");
-    XML_SetUserData(text.parser, &text);
-    XML_SetElementHandler(text.parser, begin_element, end_element);
-    XML_SetStartDoctypeDeclHandler(text.parser, begin_doctype);
-    snow_status status = feed(source, &text);
-    XML_ParserFree(text.parser);
-    return status;
+    SNOW_TRY(snow_index_parse_text(&text.xml));
+    if (!text.xml.done)
+        return fail_unfound(&text);
+    header->numbers = text.xml.end;
+    return snow_source_skip(source, text.xml.end - text.fed, "the header");
 }
-
-#else
-
-snow_status snow_vti_read_header(snow_source *source,
-                                 const snow_volume_options *options,
-                                 vti_header *header) {
-    (void)options;
-    (void)header;
-    return snow_fail_unbuilt(snow_source_context(source),
-                             "VTI and VTR, which need a reader of XML",
-                             "libexpat1-dev");
-}
-
-#endif

@@ -6,18 +6,12 @@
  * Each piece is read as a file of its own, made of the head and what begins
  * with its tag; its array may be among appended data behind all of them.  The
  * parts are joined by formats/index/mosaic.c. */
-#include "formats/features.h"
 #include "formats/index/index.h"
 #include "formats/vtk/vti.h"
 
-#if SNOW_HAVE_EXPAT
-
-#include <expat.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#define BLOCK_BYTES 65536
 
 /* The text behind a piece is read once for each, up to the appended data. */
 #define MOST_PIECES 4096
@@ -31,8 +25,8 @@ typedef struct vti_pieces {
     snow_seekable *bytes;
     const vti_header *whole;
     const vti_small *small;
-    XML_Parser parser;
-    snow_status status;
+    uint64_t parsed; /* of the bytes */
+    index_text xml;
     uint64_t head;                /* bytes before the first one's tag */
     uint64_t places[MOST_PIECES]; /* of their tags */
     size_t count;
@@ -40,101 +34,57 @@ typedef struct vti_pieces {
     bool appended; /* their data begin, and nothing else follows */
 } vti_pieces;
 
-static void fail_pieces(vti_pieces *p, const char *reason) {
-    p->status = snow_fail(p->context, SNOW_STATUS_BAD_INPUT, "%s", reason);
-    XML_StopParser(p->parser, XML_FALSE);
+static snow_status fail_pieces(const vti_pieces *p, const char *reason) {
+    return snow_fail(p->context, SNOW_STATUS_BAD_INPUT, "%s", reason);
 }
 
 /* Pieces without points are left out: a rank had none. */
-static void take_piece(vti_pieces *p, const char **attributes) {
+static snow_status take_piece(vti_pieces *p, const char **attributes) {
     const vtk_grid *grid = &p->whole->grid;
-    const uint64_t at = (uint64_t)XML_GetCurrentByteIndex(p->parser);
     int64_t first[3], points[3];
     double all = 1, whole = 1;
-    p->head = p->head ? p->head : at;
-    if (!snow_vti_take_extent(snow_vti_attribute(attributes, "Extent"), first,
+    p->head = p->head ? p->head : p->xml.at;
+    if (!snow_vti_take_extent(snow_index_attribute(attributes, "Extent"), first,
                               points))
-        return;
+        return SNOW_STATUS_OK;
     for (int i = 0; i < 3; i++) {
         if (first[i] < grid->first[i] ||
-            first[i] + points[i] > grid->first[i] + grid->points[i]) {
-            fail_pieces(p, "has a piece outside of the WholeExtent; write the "
-                           "file again");
-            return;
-        }
+            first[i] + points[i] > grid->first[i] + grid->points[i])
+            return fail_pieces(
+                p, "has a piece outside of the WholeExtent; write the "
+                   "file again");
         all *= (double)points[i];
         whole *= (double)grid->points[i];
     }
     p->points += all;
-    if (p->count == MOST_PIECES || p->points > MOST_SHARED * whole) {
-        fail_pieces(p, "has more than 4096 pieces, or pieces that overlap; "
-                       "write the whole image to one file");
-        return;
-    }
-    p->places[p->count++] = at;
+    if (p->count == MOST_PIECES || p->points > MOST_SHARED * whole)
+        return fail_pieces(p,
+                           "has more than 4096 pieces, or pieces that overlap; "
+                           "write the whole image to one file");
+    p->places[p->count++] = p->xml.at;
+    return SNOW_STATUS_OK;
 }
 
-static void XMLCALL begin_element(void *user, const char *name,
-                                  const char **attributes) {
+static snow_status begin_element(void *user, const char *name,
+                                 const char **attributes) {
     vti_pieces *p = user;
-    if (p->status != SNOW_STATUS_OK || p->appended)
-        return;
-    if (!strcmp(name, "Piece"))
-        take_piece(p, attributes);
-    p->appended = !strcmp(name, "AppendedData");
-    if (p->appended)
-        XML_StopParser(p->parser, XML_FALSE);
+    p->appended = p->xml.done = !strcmp(name, "AppendedData");
+    return strcmp(name, "Piece") ? SNOW_STATUS_OK : take_piece(p, attributes);
 }
 
-static snow_status feed(vti_pieces *p, char *block) {
-    for (uint64_t at = 0;;) {
-        const size_t got = snow_seekable_read(p->bytes, at, block, BLOCK_BYTES);
-        const enum XML_Status answer =
-            XML_Parse(p->parser, block, (int)got, got == 0);
-        at += got;
-        if (p->status != SNOW_STATUS_OK || p->appended)
-            return p->status;
-        if (answer != XML_STATUS_OK)
-            return XML_GetErrorCode(p->parser) == XML_ERROR_NO_MEMORY
-                       ? snow_fail(p->context, SNOW_STATUS_NO_MEMORY,
-                                   "out of memory to read XML")
-                       : snow_fail(
-                             p->context, SNOW_STATUS_BAD_INPUT,
-                             "its XML is damaged in line %lu (%s); get or "
-                             "write the file again",
-                             (unsigned long)XML_GetCurrentLineNumber(p->parser),
-                             XML_ErrorString(XML_GetErrorCode(p->parser)));
-        const XML_Index begun = XML_GetCurrentByteIndex(p->parser);
-        if (begun >= 0 && at - (uint64_t)begun > SNOW_XML_TAG_BYTES)
-            return snow_fail(p->context, SNOW_STATUS_BAD_INPUT,
-                             "has a tag of more than %llu bytes; it is damaged",
-                             (unsigned long long)SNOW_XML_TAG_BYTES);
-        if (!got)
-            return SNOW_STATUS_OK;
-    }
+static snow_status next_bytes(void *user, char *bytes, size_t size,
+                              size_t *got) {
+    vti_pieces *p = user;
+    *got = snow_seekable_read(p->bytes, p->parsed, bytes, size);
+    p->parsed += *got;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status find_pieces(vti_pieces *p) {
-    char *block = snow_allocate(p->context, BLOCK_BYTES);
-    if (!block)
-        return SNOW_STATUS_NO_MEMORY;
-    snow_status status = SNOW_STATUS_OK;
-    p->parser = XML_ParserCreate(NULL);
-    if (p->parser) {
-        XML_SetUserData(p->parser, p);
-        XML_SetStartElementHandler(p->parser, begin_element);
-        status = feed(p, block);
-        XML_ParserFree(p->parser);
-    } else {
-        status = snow_fail(p->context, SNOW_STATUS_NO_MEMORY,
-                           "out of memory to read XML");
-    }
-    snow_release(p->context, block);
-    if (status == SNOW_STATUS_OK && p->count < 2)
-        return snow_fail(p->context, SNOW_STATUS_BAD_INPUT,
-                         "has no piece that spans the WholeExtent; write the "
-                         "file again");
-    return status;
+    SNOW_TRY(snow_index_parse_text(&p->xml));
+    return p->count > 1 ? SNOW_STATUS_OK
+                        : fail_pieces(p, "has no piece that spans the "
+                                         "WholeExtent; write the file again");
 }
 
 /* The bytes of the head, then those from a piece on. */
@@ -189,6 +139,7 @@ snow_status snow_vti_read_pieces(snow_source *source, snow_seekable *bytes,
                                  const vti_small *small,
                                  const snow_volume_options *options,
                                  snow_volume_info *info, snow_volume **out) {
+    static const index_xml handlers = {.begin = begin_element};
     snow_context *context = snow_source_context(source);
     if (!bytes)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
@@ -202,6 +153,11 @@ snow_status snow_vti_read_pieces(snow_source *source, snow_seekable *bytes,
     p->bytes = bytes;
     p->whole = whole;
     p->small = small;
+    p->xml = (index_text){.context = context,
+                          .handlers = &handlers,
+                          .user = p,
+                          .next = next_bytes,
+                          .from = p};
     snow_status status = find_pieces(p);
     const index_parts parts = {context, p->count, p, name_piece, open_piece};
     if (status == SNOW_STATUS_OK)
@@ -209,17 +165,3 @@ snow_status snow_vti_read_pieces(snow_source *source, snow_seekable *bytes,
     snow_release(context, p);
     return status;
 }
-
-#else
-
-snow_status snow_vti_read_pieces(snow_source *source, snow_seekable *bytes,
-                                 const vti_header *whole,
-                                 const vti_small *small,
-                                 const snow_volume_options *options,
-                                 snow_volume_info *info, snow_volume **out) {
-    (void)bytes, (void)whole, (void)small, (void)options, (void)info, (void)out;
-    return snow_fail_unbuilt(snow_source_context(source), "expat",
-                             "libexpat1-dev");
-}
-
-#endif

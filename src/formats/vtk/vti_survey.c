@@ -8,16 +8,11 @@
  *
  * The text is parsed to their end, beside the source, which stays at its first
  * byte; then their numbers are read. */
-#include "formats/features.h"
+#include "formats/index/index.h"
 #include "formats/vtk/vti.h"
 
-#if SNOW_HAVE_EXPAT
-
-#include <expat.h>
 #include <math.h>
 #include <string.h>
-
-#define TEXT_BYTES 65536
 
 /* Bytes of a number in any form, and of what stands before numbers. */
 #define NUMBER_BYTES 32
@@ -34,7 +29,9 @@ typedef struct small_array {
 } small_array;
 
 typedef struct survey {
-    XML_Parser parser;
+    snow_seekable *bytes;
+    uint64_t parsed; /* of them */
+    index_text xml;
     vti_header file; /* what the file says of all arrays */
     bool rectilinear, fields, coordinates, sized;
     int64_t points[3];
@@ -44,13 +41,8 @@ typedef struct survey {
     bool raw;
 } survey;
 
-static uint64_t position(const survey *s) {
-    return (uint64_t)XML_GetCurrentByteIndex(s->parser) +
-           (uint64_t)XML_GetCurrentByteCount(s->parser);
-}
-
 static void take_array(survey *s, const char **attributes) {
-    const char *name = snow_vti_attribute(attributes, "Name");
+    const char *name = snow_index_attribute(attributes, "Name");
     small_array *out = NULL;
     if (s->coordinates && s->axes < 3)
         out = &s->axis[s->axes++];
@@ -60,18 +52,18 @@ static void take_array(survey *s, const char **attributes) {
         return;
     out->header = s->file;
     out->found = snow_vti_keep_array(&out->header, attributes, "", false);
-    out->at = position(s);
+    out->at = s->xml.end;
 }
 
-static void XMLCALL begin_element(void *user, const char *name,
-                                  const char **attributes) {
+static snow_status begin_element(void *user, const char *name,
+                                 const char **attributes) {
     survey *s = user;
     int64_t first[3];
     if (!strcmp(name, "VTKFile"))
         snow_vti_file_form(&s->file, attributes);
     else if (!strcmp(name, "RectilinearGrid"))
         s->sized = snow_vti_take_extent(
-            snow_vti_attribute(attributes, "WholeExtent"), first, s->points);
+            snow_index_attribute(attributes, "WholeExtent"), first, s->points);
     else if (!strcmp(name, "FieldData"))
         s->fields = true;
     else if (!strcmp(name, "Coordinates"))
@@ -79,71 +71,44 @@ static void XMLCALL begin_element(void *user, const char *name,
     else if (!strcmp(name, "DataArray"))
         take_array(s, attributes);
     /* Without coordinates nothing is wanted behind this element. */
-    const bool last = !strcmp(name, "AppendedData") ||
-                      (!strcmp(name, "Piece") && !s->rectilinear &&
-                       !(s->time.found && s->time.header.form == VTI_APPENDED));
-    if (!last)
-        return;
+    s->xml.done = !strcmp(name, "AppendedData") ||
+                  (!strcmp(name, "Piece") && !s->rectilinear &&
+                   !(s->time.found && s->time.header.form == VTI_APPENDED));
     if (!strcmp(name, "AppendedData")) {
-        const char *encoding = snow_vti_attribute(attributes, "encoding");
+        const char *encoding = snow_index_attribute(attributes, "encoding");
         s->raw = encoding && !strcmp(encoding, "raw");
-        s->appended = position(s);
+        s->appended = s->xml.end;
     }
-    XML_StopParser(s->parser, XML_FALSE);
+    return SNOW_STATUS_OK;
 }
 
-static void XMLCALL end_element(void *user, const char *name) {
+static snow_status end_element(void *user, const char *name) {
     survey *s = user;
     if (!strcmp(name, "FieldData"))
         s->fields = false;
     if (!strcmp(name, "Coordinates"))
         s->coordinates = false;
+    return SNOW_STATUS_OK;
 }
 
-/* Whatever is wrong with the text, the reader of the values finds too. */
-static void XMLCALL begin_doctype(void *user, const char *name,
-                                  const char *system, const char *public,
-                                  int inner) {
-    (void)name;
-    (void)system;
-    (void)public;
-    (void)inner;
-    XML_StopParser(((survey *)user)->parser, XML_FALSE);
-}
-
-static snow_status parse(snow_context *context, snow_seekable *bytes,
-                         survey *s) {
-    char *text = snow_allocate(context, TEXT_BYTES);
-    if (!text)
-        return SNOW_STATUS_NO_MEMORY;
-    enum XML_Status answer = XML_STATUS_OK;
-    for (uint64_t at = 0; answer == XML_STATUS_OK;) {
-        size_t got = snow_seekable_read(bytes, at, text, TEXT_BYTES);
-        answer = XML_Parse(s->parser, text, (int)got, got == 0);
-        at += got;
-        /* An unfinished tag is read again with each piece of the text; the
-         * reader of the values says so. */
-        const XML_Index begun = XML_GetCurrentByteIndex(s->parser);
-        if (!got || (begun >= 0 && at - (uint64_t)begun > SNOW_XML_TAG_BYTES))
-            break;
-    }
-    snow_release(context, text);
-    return answer == XML_STATUS_ERROR &&
-                   XML_GetErrorCode(s->parser) == XML_ERROR_NO_MEMORY
-               ? snow_fail(context, SNOW_STATUS_NO_MEMORY,
-                           "out of memory to read XML")
-               : SNOW_STATUS_OK;
+static snow_status next_bytes(void *user, char *bytes, size_t size,
+                              size_t *got) {
+    survey *s = user;
+    *got = snow_seekable_read(s->bytes, s->parsed, bytes, size);
+    s->parsed += *got;
+    return SNOW_STATUS_OK;
 }
 
 /* Returns where the numbers of an array begin; false if that is not in the
  * file. */
 static bool find_numbers(const survey *s, const small_array *array,
-                         snow_seekable *bytes, uint64_t *out) {
+                         uint64_t *out) {
     char blanks[BLANKS];
     *out = array->at;
     if (array->header.form != VTI_APPENDED)
         return true;
-    size_t got = snow_seekable_read(bytes, s->appended, blanks, sizeof blanks);
+    size_t got =
+        snow_seekable_read(s->bytes, s->appended, blanks, sizeof blanks);
     const char *mark = s->appended ? memchr(blanks, '_', got) : NULL;
     return mark && snow_add_u64(s->appended + (uint64_t)(mark - blanks) + 1,
                                 array->header.offset, out);
@@ -163,12 +128,12 @@ static snow_status decode(snow_source *source, const survey *s,
     return snow_vtk_read_line(source, &line, out);
 }
 
-static snow_status read_array(snow_source *source, snow_seekable *bytes,
-                              const survey *s, const small_array *array,
-                              int64_t count, const char *what, double **out) {
+static snow_status read_array(snow_source *source, const survey *s,
+                              const small_array *array, int64_t count,
+                              const char *what, double **out) {
     snow_context *context = snow_source_context(source);
     uint64_t at;
-    if (!find_numbers(s, array, bytes, &at))
+    if (!find_numbers(s, array, &at))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "%s are not in the file; write it again", what);
     if (count > CF_MOST_COORDINATES)
@@ -177,7 +142,7 @@ static snow_status read_array(snow_source *source, snow_seekable *bytes,
     char *block = snow_allocate(context, capacity);
     if (!block)
         return SNOW_STATUS_NO_MEMORY;
-    size_t got = snow_seekable_read(bytes, at, block, capacity);
+    size_t got = snow_seekable_read(s->bytes, at, block, capacity);
     snow_source *numbers;
     snow_status status = snow_source_open_memory(
         context, snow_source_name(source), block, got, &numbers);
@@ -190,63 +155,47 @@ static snow_status read_array(snow_source *source, snow_seekable *bytes,
 }
 
 /* A damaged time leaves the values as they are. */
-static snow_status take_time(snow_source *source, snow_seekable *bytes,
-                             const survey *s, vti_small *out) {
+static snow_status take_time(snow_source *source, const survey *s,
+                             vti_small *out) {
     double *value = NULL;
     if (!s->time.found)
         return SNOW_STATUS_OK;
-    snow_status status =
-        read_array(source, bytes, s, &s->time, 1, "its time", &value);
+    snow_status status = read_array(source, s, &s->time, 1, "its time", &value);
     if (status == SNOW_STATUS_OK)
         out->time = *value;
     snow_release(snow_source_context(source), value);
     return status == SNOW_STATUS_NO_MEMORY ? status : SNOW_STATUS_OK;
 }
 
-static snow_status take_all(snow_source *source, snow_seekable *bytes,
-                            survey *s, vti_small *out) {
-    snow_context *context = snow_source_context(source);
-    s->parser = XML_ParserCreate(NULL);
-    if (!s->parser)
-        return snow_fail(context, SNOW_STATUS_NO_MEMORY,
-                         "out of memory to read XML");
-    XML_SetUserData(s->parser, s);
-    XML_SetElementHandler(s->parser, begin_element, end_element);
-    XML_SetStartDoctypeDeclHandler(s->parser, begin_doctype);
-    snow_status status = parse(context, bytes, s);
-    XML_ParserFree(s->parser);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    SNOW_TRY(take_time(source, bytes, s, out));
+static snow_status take_all(snow_source *source, survey *s, vti_small *out) {
+    /* Whatever is wrong with the text, the reader of the values finds too. */
+    if (snow_index_parse_text(&s->xml) == SNOW_STATUS_NO_MEMORY)
+        return SNOW_STATUS_NO_MEMORY;
+    SNOW_TRY(take_time(source, s, out));
     for (int i = 0; i < 3; i++)
         if (s->axis[i].found && s->sized)
-            SNOW_TRY(read_array(source, bytes, s, &s->axis[i], s->points[i],
+            SNOW_TRY(read_array(source, s, &s->axis[i], s->points[i],
                                 "its coordinates", &out->coordinates[i]));
     return SNOW_STATUS_OK;
 }
 
 snow_status snow_vti_survey(snow_source *source, snow_seekable *bytes,
                             bool rectilinear, vti_small *out) {
+    static const index_xml handlers = {.begin = begin_element,
+                                       .end = end_element};
     snow_context *context = snow_source_context(source);
-    survey *s = snow_allocate_clear(context, sizeof *s);
+    survey *s = snow_allocate(context, sizeof *s);
     *out = (vti_small){.time = NAN};
     if (!s)
         return SNOW_STATUS_NO_MEMORY;
-    s->rectilinear = rectilinear;
-    snow_status status = take_all(source, bytes, s, out);
+    *s = (survey){.bytes = bytes,
+                  .rectilinear = rectilinear,
+                  .xml = {.context = context,
+                          .handlers = &handlers,
+                          .user = s,
+                          .next = next_bytes,
+                          .from = s}};
+    snow_status status = take_all(source, s, out);
     snow_release(context, s);
     return status;
 }
-
-#else
-
-snow_status snow_vti_survey(snow_source *source, snow_seekable *bytes,
-                            bool rectilinear, vti_small *out) {
-    (void)source;
-    (void)bytes;
-    (void)rectilinear;
-    *out = (vti_small){0};
-    return SNOW_STATUS_OK;
-}
-
-#endif
