@@ -25,7 +25,7 @@ typedef struct conversion {
 
 /* Doubles that the integer types hold, ends included; those of 64 bits end at
  * the last double before the power of two. */
-static void set_limits(conversion *c) {
+const double *snow_type_limits(snow_type type) {
     static const double limits[][2] = {
         [SNOW_TYPE_INT8] = {INT8_MIN, INT8_MAX},
         [SNOW_TYPE_UINT8] = {0, UINT8_MAX},
@@ -38,9 +38,13 @@ static void set_limits(conversion *c) {
         [SNOW_TYPE_FLOAT32] = {-0x1.fffffep127, 0x1.fffffep127},
         [SNOW_TYPE_FLOAT64] = {-INFINITY, INFINITY},
     };
+    return limits[type];
+}
+
+static void set_limits(conversion *c) {
     c->integer = c->type != SNOW_TYPE_FLOAT32 && c->type != SNOW_TYPE_FLOAT64;
-    c->least = limits[c->type][0];
-    c->most = limits[c->type][1];
+    c->least = snow_type_limits(c->type)[0];
+    c->most = snow_type_limits(c->type)[1];
 }
 
 /* What a data value becomes; floats keep what is not finite. */
@@ -62,16 +66,14 @@ static double fit(conversion *c, double value) {
     return kept;
 }
 
-static void store(snow_type type, const double *values, int64_t first,
-                  size_t count, void *voxels) {
+void snow_type_store(snow_type type, const double *values, size_t count,
+                     void *to) {
     switch (type) {
-#define NARROW(name, c_type, text)             \
-    case SNOW_TYPE_##name: {                   \
-        c_type *to = (c_type *)voxels + first; \
-        for (size_t i = 0; i < count; i++)     \
-            to[i] = (c_type)values[i];         \
-        break;                                 \
-    }
+#define NARROW(name, c_type, text)                 \
+    case SNOW_TYPE_##name:                         \
+        for (size_t i = 0; i < count; i++)         \
+            ((c_type *)to)[i] = (c_type)values[i]; \
+        break;
         SNOW_TYPE_MAP(NARROW)
 #undef NARROW
     case SNOW_TYPE_NONE:
@@ -90,7 +92,9 @@ static void run(const snow_volume *volume, conversion *c, void *voxels) {
         for (size_t i = 0; i < count; i++)
             values[i] = fit(c, info->slope * values[i] + info->intercept);
         if (voxels)
-            store(c->type, values, first, count, voxels);
+            snow_type_store(c->type, values, count,
+                            (char *)voxels +
+                                (size_t)first * snow_type_size(c->type));
     }
 }
 

@@ -54,6 +54,18 @@ snow_type snow_type_from_name(const char *name) {
     return SNOW_TYPE_NONE;
 }
 
+snow_type snow_type_of_integer(size_t bytes, bool is_signed) {
+    for (int type = is_signed ? SNOW_TYPE_INT8 : SNOW_TYPE_UINT8;
+         type < SNOW_TYPE_FLOAT32; type += 2)
+        if (snow_type_size((snow_type)type) == bytes)
+            return (snow_type)type;
+    return SNOW_TYPE_NONE;
+}
+
+bool snow_type_is_signed(snow_type type) {
+    return type && type == snow_type_of_integer(snow_type_size(type), true);
+}
+
 /* Asked at run time, which compilers fold to a constant; C11 has no macro. */
 bool snow_machine_big_endian(void) {
     const uint16_t one = 1;

@@ -78,6 +78,18 @@ int snow_volume_thin_axis(const snow_volume_info *info);
  * unit "", and the given format name. */
 snow_volume_info snow_volume_info_default(const char *format);
 
+/* The integers of so many bytes, NONE if there are none; whether a type is that
+ * of integers with a sign. */
+snow_type snow_type_of_integer(size_t bytes, bool is_signed);
+bool snow_type_is_signed(snow_type type);
+
+/* Stores values that the type holds; integers are whole. */
+void snow_type_store(snow_type type, const double *values, size_t count,
+                     void *to);
+
+/* The least and the most value of a type. */
+const double *snow_type_limits(snow_type type);
+
 /* Writes a stored value into all voxels, which the volume owns. */
 void snow_volume_fill(snow_volume *volume, double value);
 

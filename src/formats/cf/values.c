@@ -90,11 +90,6 @@ static bool is_integer(snow_type type) {
     return type < SNOW_TYPE_FLOAT32;
 }
 
-static bool is_signed(snow_type type) {
-    return type == SNOW_TYPE_INT8 || type == SNOW_TYPE_INT16 ||
-           type == SNOW_TYPE_INT32 || type == SNOW_TYPE_INT64;
-}
-
 cf_values snow_cf_values_default(snow_type type) {
     return (cf_values){.type = type,
                        .scale = 1,
@@ -102,24 +97,12 @@ cf_values snow_cf_values_default(snow_type type) {
                        .most = {INFINITY, INT64_MAX}};
 }
 
-/* Integers of NetCDF's old versions are signed, bytes of HDF4 unsigned. */
-static snow_type other_sign(snow_type type) {
-    static const snow_type pairs[][2] = {{SNOW_TYPE_INT8, SNOW_TYPE_UINT8},
-                                         {SNOW_TYPE_INT16, SNOW_TYPE_UINT16},
-                                         {SNOW_TYPE_INT32, SNOW_TYPE_UINT32},
-                                         {SNOW_TYPE_INT64, SNOW_TYPE_UINT64}};
-    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
-        for (int n = 0; n < 2; n++)
-            if (pairs[i][n] == type)
-                return pairs[i][!n];
-    return type;
-}
-
 /* Makes a number one of the type; false if that cannot hold it.  Of a type
  * whose sign was changed it may be a number of the stored one: -1 is 255. */
 static bool fits(snow_type type, bool changed, cf_number *n) {
     const double end = ldexp(1, 8 * (int)snow_type_size(type));
-    const double low = is_signed(type) ? -end / 2 : 0, high = low + end;
+    const double low = snow_type_is_signed(type) ? -end / 2 : 0,
+                 high = low + end;
     if (type == SNOW_TYPE_FLOAT64)
         return true;
     if (type == SNOW_TYPE_FLOAT32) {
@@ -186,8 +169,9 @@ cf_values snow_cf_settle(snow_context *context, const cf_attributes *from,
     cf_number n[CF_MOST_NUMBERS];
     out.scale = from->scale;
     out.offset = from->offset;
-    if (is_integer(type) && from->sign && is_signed(type) == (from->sign > 0))
-        out.type = other_sign(type);
+    /* Integers of NetCDF's old versions are signed, bytes of HDF4 unsigned. */
+    if (is_integer(type) && from->sign)
+        out.type = snow_type_of_integer(snow_type_size(type), from->sign < 0);
     if (out.type == SNOW_TYPE_UINT64) {
         out.least.whole = 0;
         out.most.whole = UINT64_MAX;
@@ -238,9 +222,10 @@ void snow_cf_decode(const cf_values *values, int64_t count, double *numbers) {
     const double end = ldexp(1, 8 * (int)snow_type_size(values->type));
     for (int64_t i = 0; i < count; i++) {
         double value = numbers[i];
-        if (is_integer(values->type) && value < 0 && !is_signed(values->type))
+        if (is_integer(values->type) && value < 0 &&
+            !snow_type_is_signed(values->type))
             value += end;
-        if (is_signed(values->type) && value >= end / 2)
+        if (snow_type_is_signed(values->type) && value >= end / 2)
             value -= end;
         numbers[i] = is_missing(values, snow_cf_number(value))
                          ? NAN

@@ -5,6 +5,7 @@
  * as the image has.  So the headers of JPEG and JPEG-LS (ITU T.81, B.2.2; T.87,
  * C.2.2) and of JPEG 2000 (T.800, A.5.1) must agree with the image's before
  * GDCM sees them. */
+#include "formats/bytes/number.h"
 #include "formats/dicom/dicom.h"
 
 #include <string.h>
@@ -17,10 +18,7 @@ typedef struct packed_head {
 } packed_head;
 
 static uint32_t big(const unsigned char *at, int bytes) {
-    uint32_t value = 0;
-    for (int i = 0; i < bytes; i++)
-        value = value << 8 | at[i];
-    return value;
+    return (uint32_t)snow_number_at(at, bytes, true);
 }
 
 /* Walks the segments up to the start of the frame. */
@@ -255,9 +253,7 @@ bool snow_dicom_unpack_runs(const dicom_image *image,
     if (size < 64 || segments > 15)
         return false;
     for (size_t i = 0; i < 16; i++)
-        begin[i] = (uint32_t)bytes[4 * i] | (uint32_t)bytes[4 * i + 1] << 8 |
-                   (uint32_t)bytes[4 * i + 2] << 16 |
-                   (uint32_t)bytes[4 * i + 3] << 24;
+        begin[i] = (uint32_t)snow_number_at(bytes + 4 * i, 4, false);
     if (begin[0] != segments)
         return false;
     begin[segments + 1] = (uint32_t)size;

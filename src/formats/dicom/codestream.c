@@ -2,6 +2,7 @@
  * T.800, annex A), each of which must end where the next one begins. */
 #include "formats/dicom/packets.h"
 
+#include "formats/bytes/number.h"
 #include "formats/dicom/dicom.h"
 
 #include <stdlib.h>
@@ -23,10 +24,7 @@ typedef struct segment {
 } segment;
 
 static uint64_t whole(const unsigned char *at, int bytes) {
-    uint64_t value = 0;
-    for (int i = 0; i < bytes; i++)
-        value = value << 8 | at[i];
-    return value;
+    return snow_number_at(at, bytes, true);
 }
 
 static int next_marker(const rest *r) {

@@ -2,6 +2,7 @@
  * (PS3.3: C.7.6.2 and C.7.6.3 image plane and pixels, C.7.6.16 functional
  * groups of frames, C.8.4 nuclear medicine, C.8.8.3 doses, C.8.20
  * segmentations). */
+#include "formats/bytes/number.h"
 #include "formats/dicom/dicom.h"
 
 #include <math.h>
@@ -71,17 +72,8 @@ static int parse_numbers(char *text, double *out, int most) {
 
 /* Reads one number of a file in either byte order. */
 static double binary(const unsigned char *bytes, size_t size, bool big) {
-    unsigned char native[8];
-    uint16_t s;
-    uint32_t l;
-    double d;
-    memcpy(native, bytes, size);
-    if (big != snow_machine_big_endian())
-        snow_swap_bytes(native, 1, size);
-    memcpy(&s, native, sizeof s);
-    memcpy(&l, native, sizeof l);
-    memcpy(&d, native, sizeof d);
-    return size == 2 ? s : size == 4 ? l : d;
+    return size == 8 ? snow_double_at(bytes, big)
+                     : (double)snow_number_at(bytes, (int)size, big);
 }
 
 static int numbers_of(const dicom_reader *reader, const dicom_element *element,

@@ -15,6 +15,7 @@
  *          multiple of 4
  *
  * As in dcm2niix, nibabel (nicom) and SPM, which found this out. */
+#include "formats/bytes/number.h"
 #include "formats/dicom/dicom.h"
 
 #include <math.h>
@@ -32,8 +33,7 @@ typedef struct csa {
 } csa;
 
 static uint32_t little(const unsigned char *at) {
-    return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 |
-           (uint32_t)at[3] << 24;
+    return (uint32_t)snow_number_at(at, 4, false);
 }
 
 /* Reads the numbers of a named tag; returns how many there are. */

@@ -7,6 +7,7 @@
  *
  * Colours are not used as such: a pixel gets the value 0.299 R + 0.587 G +
  * 0.114 B, from 0 to 255, like Y of YBR_FULL. */
+#include "formats/bytes/number.h"
 #include "formats/dicom/dicom.h"
 
 #include <string.h>
@@ -23,8 +24,7 @@ typedef struct palette_shape {
 } palette_shape;
 
 static uint16_t word_of(const dicom_reader *reader, const unsigned char *at) {
-    return (uint16_t)(reader->big_endian ? at[0] << 8 | at[1]
-                                         : at[1] << 8 | at[0]);
+    return (uint16_t)snow_number_at(at, 2, reader->big_endian);
 }
 
 static snow_status fail_palette(dicom_reader *reader, const char *what) {

@@ -14,6 +14,7 @@
  *
  * Values stay in the file.  A length beyond the end of the file is refused
  * here, before any memory is allocated for it. */
+#include "formats/bytes/number.h"
 #include "formats/dicom/dicom.h"
 
 #include <string.h>
@@ -50,10 +51,7 @@ typedef struct head {
 } head;
 
 static uint32_t whole(const unsigned char *at, int bytes, bool big) {
-    uint32_t value = 0;
-    for (int i = 0; i < bytes; i++)
-        value |= (uint32_t)at[i] << 8 * (big ? bytes - 1 - i : i);
-    return value;
+    return (uint32_t)snow_number_at(at, bytes, big);
 }
 
 static bool is_vr(const unsigned char *at) {

@@ -4,6 +4,7 @@
  * Fragments are assigned to frames by the table before them, or one each, or
  * all to a single frame; otherwise a frame begins with a fragment that begins
  * like a code stream. */
+#include "formats/bytes/number.h"
 #include "formats/dicom/dicom.h"
 
 #include "base/minmax.h"
@@ -129,9 +130,7 @@ static bool table_entry(dicom_reader *reader, const dicom_element *pixels,
         snow_seekable_read(reader->store, table->at + (uint64_t)number * 4,
                            bytes, 4) < 4)
         return false;
-    uint64_t offset = 0;
-    for (int i = 0; i < 4; i++)
-        offset |= (uint64_t)bytes[reader->big_endian ? 3 - i : i] << 8 * i;
+    const uint64_t offset = snow_number_at(bytes, 4, reader->big_endian);
     /* from the item after the table, whose header has 8 bytes */
     *out = table->at + table->length + offset + 8;
     return true;

@@ -181,38 +181,15 @@ static snow_status fetch(decoder *d, const dicom_frame *frame,
 
 /* --- the volume ----------------------------------------------------------- */
 
-/* Stores integers in their type; returns false if one does not fit. */
-#define PUT_WHOLE(type, least, most)                        \
-    for (size_t i = 0; i < count; i++) {                    \
-        if (!(values[i] >= (least) && values[i] <= (most))) \
-            return false;                                   \
-        ((type *)to)[i] = (type)values[i];                  \
-    }                                                       \
-    return true
-
+/* Returns false if the type does not hold a value. */
 static bool store_values(snow_type type, const double *values, size_t count,
                          void *to) {
-    switch (type) {
-    case SNOW_TYPE_INT8:
-        PUT_WHOLE(int8_t, INT8_MIN, INT8_MAX);
-    case SNOW_TYPE_UINT8:
-        PUT_WHOLE(uint8_t, 0, UINT8_MAX);
-    case SNOW_TYPE_INT16:
-        PUT_WHOLE(int16_t, INT16_MIN, INT16_MAX);
-    case SNOW_TYPE_UINT16:
-        PUT_WHOLE(uint16_t, 0, UINT16_MAX);
-    case SNOW_TYPE_INT32:
-        PUT_WHOLE(int32_t, INT32_MIN, INT32_MAX);
-    case SNOW_TYPE_UINT32:
-        PUT_WHOLE(uint32_t, 0, UINT32_MAX);
-    case SNOW_TYPE_FLOAT32:
-        for (size_t i = 0; i < count; i++)
-            ((float *)to)[i] = (float)values[i];
-        return true;
-    default:
-        memcpy(to, values, count * sizeof *values);
-        return true;
-    }
+    const double *limits = snow_type_limits(type);
+    for (size_t i = 0; i < count && type < SNOW_TYPE_FLOAT32; i++)
+        if (!(values[i] >= limits[0] && values[i] <= limits[1]))
+            return false;
+    snow_type_store(type, values, count, to);
+    return true;
 }
 
 /* Makes slice `z` of the whole volume. */
@@ -286,18 +263,12 @@ static void survey(const dicom_stack *stack, bool *scales, bool *pads) {
 
 static snow_status stored_type(snow_context *context, const dicom_image *image,
                                snow_type *out) {
-    bool is_signed = image->is_signed;
-    if (image->allocated == 8)
-        *out = is_signed ? SNOW_TYPE_INT8 : SNOW_TYPE_UINT8;
-    else if (image->allocated == 16)
-        *out = is_signed ? SNOW_TYPE_INT16 : SNOW_TYPE_UINT16;
-    else if (image->allocated == 32)
-        *out = is_signed ? SNOW_TYPE_INT32 : SNOW_TYPE_UINT32;
-    else
+    const int wide = image->allocated;
+    if (wide != 8 && wide != 16 && wide != 32)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
-            "pixels of %d bits are not supported, only 8, 16 and 32",
-            image->allocated);
+            "pixels of %d bits are not supported, only 8, 16 and 32", wide);
+    *out = snow_type_of_integer((size_t)wide / 8, image->is_signed);
     if (image->stored < 1 || image->high < image->stored - 1 ||
         image->high >= image->allocated)
         return snow_fail(

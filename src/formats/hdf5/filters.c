@@ -8,6 +8,7 @@
 #if SNOW_HAVE_HDF5
 
 #include "formats/array.h"
+#include "formats/bytes/number.h"
 #include "io/zlib_memory.h"
 
 #include <string.h>
@@ -85,8 +86,7 @@ static const char *undo_fletcher(hdf5_packed *packed) {
         return "is shorter than its checksum";
     packed->size -= SUM_BYTES;
     const unsigned char *at = packed->bytes + packed->size;
-    const uint32_t stored = (uint32_t)at[0] | (uint32_t)at[1] << 8 |
-                            (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
+    const uint32_t stored = (uint32_t)snow_number_at(at, 4, false);
     /* HDF5 before 1.6.3 swapped the bytes of both halves on some machines. */
     const uint32_t swapped =
         (stored & 0x00ff00ff) << 8 | (stored & 0xff00ff00) >> 8;
@@ -221,13 +221,6 @@ static void undo_shuffle(snow_context *context, uint64_t width,
 
 /* --- filters of libhdf5 and of plugins ------------------------------------ */
 
-static uint64_t number(const unsigned char *bytes, int size, bool big) {
-    uint64_t value = 0;
-    for (int i = 0; i < size; i++)
-        value = value << 8 | bytes[big ? i : size - 1 - i];
-    return value;
-}
-
 /* Whether a chunk has as many bytes as the filter's header says, and that
  * `bytes` come of it.  A filter that is not known makes what its plugin
  * makes. */
@@ -240,15 +233,16 @@ static const char *check_foreign(int id, const unsigned *settings, size_t count,
     case H5Z_FILTER_SZIP: /* the unpacked size, and the coded blocks */
         head = 5;
         if (size >= head)
-            made = number(at, 4, false);
+            made = snow_number_at(at, 4, false);
         break;
     case H5Z_FILTER_SCALEOFFSET: /* bits of a value, and the least value */
         head = 21;
         if (size < head || count < 5)
             break;
-        if (number(at, 4, false) > 8 * (uint64_t)settings[4])
+        if (snow_number_at(at, 4, false) > 8 * (uint64_t)settings[4])
             return "has more bits for a value than its type";
-        needed = head + ((uint64_t)settings[2] * number(at, 4, false) + 7) / 8;
+        needed = head +
+                 ((uint64_t)settings[2] * snow_number_at(at, 4, false) + 7) / 8;
         break;
     case H5Z_FILTER_NBIT: /* the precision of an atomic type, in the settings */
         if (count > 6 && settings[3] == 1)
@@ -261,15 +255,15 @@ static const char *check_foreign(int id, const unsigned *settings, size_t count,
     case FILTER_BLOSC:
         head = 16;
         if (size >= head) {
-            made = number(at + 4, 4, false);
-            needed = number(at + 12, 4, false);
+            made = snow_number_at(at + 4, 4, false);
+            needed = snow_number_at(at + 12, 4, false);
         }
         break;
     case FILTER_LZ4:
     case FILTER_BITSHUFFLE:
         head = id == FILTER_LZ4 || (count > 4 && settings[4]) ? 12 : 0;
         if (head && size >= head)
-            made = number(at, 8, true);
+            made = snow_number_at(at, 8, true);
         else if (!head)
             needed = bytes;
         break;

@@ -19,24 +19,15 @@ typedef struct survey {
     char list[800];              /* all matches, as far as they fit */
 } survey;
 
-static snow_type integer_type(size_t size, bool is_signed) {
-    static const snow_type types[4][2] = {{SNOW_TYPE_UINT8, SNOW_TYPE_INT8},
-                                          {SNOW_TYPE_UINT16, SNOW_TYPE_INT16},
-                                          {SNOW_TYPE_UINT32, SNOW_TYPE_INT32},
-                                          {SNOW_TYPE_UINT64, SNOW_TYPE_INT64}};
-    for (size_t i = 0; i < 4 && size; i++)
-        if (size <= (size_t)1 << i)
-            return types[i][is_signed];
-    return SNOW_TYPE_NONE;
-}
-
 /* The smallest type that holds every value; libhdf5 converts other types.
  * Enumerations, also booleans, are read as numbers. */
 static snow_type type_of(hid_t type) {
     size_t size = H5Tget_size(type);
     switch (H5Tget_class(type)) {
     case H5T_INTEGER:
-        return integer_type(size, H5Tget_sign(type) == H5T_SGN_2);
+        while (size < 8 && size & (size - 1)) /* 3 bytes are read as 4 */
+            size++;
+        return snow_type_of_integer(size, H5Tget_sign(type) == H5T_SGN_2);
     case H5T_FLOAT:
         return !size       ? SNOW_TYPE_NONE
                : size <= 4 ? SNOW_TYPE_FLOAT32

@@ -17,6 +17,7 @@
  *     attribute info     address of the heap
  *     FRHP               sizes of blocks; the root, which is a block or
  *     FHIB               addresses of blocks, which hold attribute messages */
+#include "formats/bytes/number.h"
 #include "formats/hdf5/hdf5.h"
 
 #if SNOW_HAVE_HDF5
@@ -60,10 +61,7 @@ typedef struct search {
 } search;
 
 static uint64_t number(const unsigned char *bytes, int size) {
-    uint64_t value = 0;
-    for (int i = size - 1; i >= 0; i--)
-        value = value << 8 | bytes[i];
-    return value;
+    return snow_number_at(bytes, size, false);
 }
 
 static bool copy_bytes(const search *s, uint64_t at, void *out, size_t size) {

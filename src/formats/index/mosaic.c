@@ -138,18 +138,6 @@ static snow_status measure(mosaic *m, snow_volume_info *info) {
     return SNOW_STATUS_OK;
 }
 
-static void clear(snow_volume *volume) {
-    const int64_t *dims = volume->info.dims;
-    const int64_t all = dims[0] * dims[1] * dims[2];
-    const snow_type type = volume->info.type;
-    if (type != SNOW_TYPE_FLOAT32 && type != SNOW_TYPE_FLOAT64)
-        memset(volume->owned, 0, (size_t)all * snow_type_size(type));
-    for (int64_t i = 0; i < all && type == SNOW_TYPE_FLOAT32; i++)
-        ((float *)volume->owned)[i] = NAN;
-    for (int64_t i = 0; i < all && type == SNOW_TYPE_FLOAT64; i++)
-        ((double *)volume->owned)[i] = NAN;
-}
-
 void snow_mosaic_copy(const snow_volume *from, const int64_t at[3],
                       const int64_t first[3], snow_volume *to) {
     const int64_t *wide = from->info.dims, *dims = to->info.dims;
@@ -208,7 +196,7 @@ static snow_status read_parts(const mosaic *m,
     snow_warning_fn *warning = context->warning;
     snow_status status = SNOW_STATUS_OK;
     context->warning = NULL;
-    clear(to);
+    snow_volume_fill(to, to->info.type < SNOW_TYPE_FLOAT32 ? 0 : NAN);
     for (size_t i = 0; i < m->from->count && status == SNOW_STATUS_OK; i++) {
         snow_monitor_part whole = snow_monitor_divide(
             context->monitor, (double)i, (double)m->from->count);

@@ -86,10 +86,6 @@ static void begin_attribute(xdmf_file *f, const char **attributes) {
 }
 
 static snow_type type_of(const char *kind, int64_t bytes) {
-    static const snow_type whole[2][4] = {
-        {SNOW_TYPE_INT8, SNOW_TYPE_INT16, SNOW_TYPE_INT32, SNOW_TYPE_INT64},
-        {SNOW_TYPE_UINT8, SNOW_TYPE_UINT16, SNOW_TYPE_UINT32,
-         SNOW_TYPE_UINT64}};
     if (!kind || snow_xdmf_is(kind, "float") || snow_xdmf_is(kind, "double"))
         return bytes == 8 || snow_xdmf_is(kind, "double") ? SNOW_TYPE_FLOAT64
                                                           : SNOW_TYPE_FLOAT32;
@@ -97,10 +93,9 @@ static snow_type type_of(const char *kind, int64_t bytes) {
         bytes = 1;
     if (snow_xdmf_is(kind, "short") || snow_xdmf_is(kind, "ushort"))
         bytes = 2;
-    for (int i = 0; i < 4; i++)
-        if (bytes == 1 << i)
-            return whole[tolower((unsigned char)*kind) == 'u'][i];
-    return SNOW_TYPE_NONE;
+    return bytes < 0 ? SNOW_TYPE_NONE
+                     : snow_type_of_integer(
+                           (size_t)bytes, tolower((unsigned char)*kind) != 'u');
 }
 
 static snow_status begin_item(xdmf_file *f, const char **attributes) {

@@ -4,6 +4,8 @@
  * file has room for so many. */
 #include "formats/netcdf/netcdf.h"
 
+#include "formats/bytes/number.h"
+
 #include <string.h>
 
 /* Tags before the lists. */
@@ -50,11 +52,8 @@ static void copy_bytes(cursor *c, void *out, size_t size) {
 
 static uint64_t take_number(cursor *c, int size) {
     unsigned char bytes[8];
-    uint64_t value = 0;
     copy_bytes(c, bytes, (size_t)size);
-    for (int i = 0; i < size; i++)
-        value = value << 8 | bytes[i];
-    return value;
+    return snow_number_at(bytes, size, true);
 }
 
 /* A count or size, never below 0. */
@@ -123,10 +122,9 @@ static snow_type type_of(uint64_t type) {
 
 /* Takes a number and passes it. */
 static cf_number take_value(cursor *c, uint64_t type) {
-    const uint64_t bits = take_number(c, (int)type_bytes(type));
-    const uint32_t low = (uint32_t)bits;
-    float narrow;
-    double wide;
+    unsigned char bytes[8];
+    copy_bytes(c, bytes, (size_t)type_bytes(type));
+    const uint64_t bits = snow_number_at(bytes, (int)type_bytes(type), true);
     switch (type) {
     case BYTE:
         return snow_cf_number((int8_t)bits);
@@ -137,11 +135,9 @@ static cf_number take_value(cursor *c, uint64_t type) {
     case INT64:
         return (cf_number){(double)(int64_t)bits, bits};
     case FLOAT:
-        memcpy(&narrow, &low, sizeof narrow);
-        return snow_cf_number((double)narrow);
+        return snow_cf_number(snow_float_at(bytes, true));
     case DOUBLE:
-        memcpy(&wide, &bits, sizeof wide);
-        return snow_cf_number(wide);
+        return snow_cf_number(snow_double_at(bytes, true));
     default:
         return (cf_number){(double)bits, bits};
     }

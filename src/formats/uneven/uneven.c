@@ -177,26 +177,10 @@ static double blend(double low, double high, double up) {
 }
 
 /* Stores a row; the values lie between those of the type. */
-static void store_row(snow_type type, void *to, int64_t count,
-                      const double *values) {
-    switch (type) {
-#define STORE(NAME, c_type, round)               \
-    case SNOW_TYPE_##NAME:                       \
-        for (int64_t i = 0; i < count; i++)      \
-            ((c_type *)to)[i] = (c_type)(round); \
-        break;
-        STORE(INT8, int8_t, rint(values[i]))
-        STORE(UINT8, uint8_t, rint(values[i]))
-        STORE(INT16, int16_t, rint(values[i]))
-        STORE(UINT16, uint16_t, rint(values[i]))
-        STORE(INT32, int32_t, rint(values[i]))
-        STORE(UINT32, uint32_t, rint(values[i]))
-        STORE(FLOAT32, float, values[i])
-        STORE(FLOAT64, double, values[i])
-#undef STORE
-    default:
-        break;
-    }
+static void store_row(snow_type type, void *to, int64_t count, double *values) {
+    for (int64_t i = 0; i < count && type < SNOW_TYPE_FLOAT32; i++)
+        values[i] = rint(values[i]);
+    snow_type_store(type, values, (size_t)count, to);
 }
 
 typedef struct resampling {

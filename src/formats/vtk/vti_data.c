@@ -8,6 +8,7 @@
  *                 blocks
  *
  * All counts have 4 or 8 bytes, according to the file's header_type. */
+#include "formats/bytes/number.h"
 #include "formats/vtk/vti.h"
 #include "io/filters/filters.h"
 
@@ -20,9 +21,7 @@ static snow_status take_count(snow_source *source, const vti_header *header,
     int size = header->count_bytes;
     SNOW_TRY(snow_source_read_all(source, bytes, (size_t)size,
                                   "the size of the voxels"));
-    *out = 0;
-    for (int i = 0; i < size; i++)
-        *out = *out << 8 | bytes[header->big_endian ? i : size - 1 - i];
+    *out = snow_number_at(bytes, size, header->big_endian);
     return SNOW_STATUS_OK;
 }
 

@@ -212,26 +212,17 @@ static void remember(vti_text *text, const char *name) {
     memcpy(text->seen + used, name, strlen(name) + 1);
 }
 
-static snow_type type_named(const char *name) {
-    static const char *const names[] = {"Int8",    "UInt8",  "Int16", "UInt16",
-                                        "Int32",   "UInt32", "Int64", "UInt64",
-                                        "Float32", "Float64"};
-    for (int i = 0; i < 10 && name; i++)
-        if (!strcmp(name, names[i]))
-            return (snow_type)(SNOW_TYPE_INT8 + i);
-    return SNOW_TYPE_NONE;
-}
-
 bool snow_vti_keep_array(vti_header *header, const char **attributes,
                          const char *name, bool cells) {
     const char *form = snow_index_attribute(attributes, "format");
     const char *channels =
         snow_index_attribute(attributes, "NumberOfComponents");
     const char *offset = snow_index_attribute(attributes, "offset");
+    const char *type = snow_index_attribute(attributes, "type");
     int64_t at = 0;
     header->array = (vtk_array){
         .cells = cells,
-        .type = type_named(snow_index_attribute(attributes, "type")),
+        .type = type ? snow_type_from_name(type) : SNOW_TYPE_NONE,
         .channels = 1,
     };
     if (strlen(name) >= sizeof header->array.name || !form)

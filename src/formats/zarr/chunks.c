@@ -8,6 +8,7 @@
  * The index of a shard gives the position and the size of each chunk, eight
  * bytes each, all ones for a chunk that is not stored.  Memory is needed for
  * the volume, one compressed chunk and one decompressed chunk. */
+#include "formats/bytes/number.h"
 #include "formats/zarr/zarr.h"
 
 #include <stdio.h>
@@ -299,10 +300,8 @@ static snow_status read_index(filler *f, const zarr_file *file) {
     SNOW_TRY(SNOW_RESERVE(f->context, f->index, 0, all));
     SNOW_TRY(snow_zarr_read(file, array->index_first ? 0 : file->size - all,
                             f->index, (size_t)all));
-    const unsigned char *at = f->index + bytes;
-    if (array->index_summed &&
-        ((uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 |
-         (uint32_t)at[3] << 24) != snow_zarr_sum(f->index, (size_t)bytes))
+    if (array->index_summed && snow_number_at(f->index + bytes, 4, false) !=
+                                   snow_zarr_sum(f->index, (size_t)bytes))
         return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
                          "%s: the index of its shard does not match its "
                          "checksum; it is damaged, copy it again",
@@ -319,11 +318,8 @@ static snow_status take_chunk(filler *f, const zarr_file *file,
     f->chunks++;
     if (is_there && array->sharded) {
         const unsigned char *entry = f->index + 16 * entry_of(array, chunk);
-        first = size = 0;
-        for (int i = 0; i < 8; i++) {
-            first |= (uint64_t)entry[i] << (8 * i);
-            size |= (uint64_t)entry[8 + i] << (8 * i);
-        }
+        first = snow_number_at(entry, 8, false);
+        size = snow_number_at(entry + 8, 8, false);
         is_there = first != UINT64_MAX || size != UINT64_MAX;
         if (is_there && (first > file->size || size > file->size - first))
             return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,

@@ -60,8 +60,7 @@ static bool is_own_delta(const json_t *given, const zarr_array *array) {
             (*type == '>') != array->big_endian)
             return false;
     }
-    return array->type != SNOW_TYPE_FLOAT32 &&
-           array->type != SNOW_TYPE_FLOAT64 &&
+    return array->type < SNOW_TYPE_FLOAT32 &&
            array->values == SNOW_CODING_PLAIN;
 }
 
@@ -153,8 +152,7 @@ static bool fill_bits(const json_t *given, const zarr_array *array,
 static bool store_whole(const json_t *given, double value, snow_type type,
                         unsigned char *fill) {
     size_t width = snow_type_size(type);
-    bool is_signed = type == SNOW_TYPE_INT8 || type == SNOW_TYPE_INT16 ||
-                     type == SNOW_TYPE_INT32 || type == SNOW_TYPE_INT64;
+    bool is_signed = snow_type_is_signed(type);
     double end = ldexp(1, (int)(8 * width) - (is_signed ? 1 : 0));
     double least = is_signed ? -end : 0;
     if (!(value >= least && (value < end || (width == 8 && value <= end))) ||

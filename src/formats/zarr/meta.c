@@ -61,20 +61,14 @@ static snow_status check_bytes(const zarr_store *store, const char *path,
 }
 
 static snow_type type_of(char kind, size_t width) {
-    static const snow_type types[2][4] = {
-        {SNOW_TYPE_INT8, SNOW_TYPE_INT16, SNOW_TYPE_INT32, SNOW_TYPE_INT64},
-        {SNOW_TYPE_UINT8, SNOW_TYPE_UINT16, SNOW_TYPE_UINT32,
-         SNOW_TYPE_UINT64}};
     if (kind == 'f')
         return width == 8                 ? SNOW_TYPE_FLOAT64
                : width == 2 || width == 4 ? SNOW_TYPE_FLOAT32
                                           : SNOW_TYPE_NONE;
     if (kind == 'b')
         return width == 1 ? SNOW_TYPE_UINT8 : SNOW_TYPE_NONE;
-    for (size_t i = 0; i < 4; i++)
-        if ((kind == 'i' || kind == 'u') && width == (size_t)1 << i)
-            return types[kind == 'u'][i];
-    return SNOW_TYPE_NONE;
+    return kind == 'i' || kind == 'u' ? snow_type_of_integer(width, kind == 'i')
+                                      : SNOW_TYPE_NONE;
 }
 
 static snow_status take_type(const zarr_store *store, const char *path,

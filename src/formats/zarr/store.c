@@ -4,6 +4,7 @@
  * answer.  Names come from numbers and from checked paths: none leads out of
  * the store, but for links that the owner of the folder has made. */
 #include "base/monitor.h"
+#include "formats/bytes/number.h"
 #include "formats/zarr/zarr.h"
 #include "io/folder.h"
 #include "io/lookup.h"
@@ -44,8 +45,7 @@ static bool next_record(const zarr_store *store, size_t *at, record *out) {
     if (!left || left < (size_t)begin[0] + 5)
         return false;
     const unsigned char *count = begin + 1 + begin[0];
-    size_t size = (size_t)count[0] | (size_t)count[1] << 8 |
-                  (size_t)count[2] << 16 | (size_t)count[3] << 24;
+    size_t size = (size_t)snow_number_at(count, 4, false);
     if (size > left - begin[0] - 5)
         return false;
     *out = (record){(const char *)begin + 1, begin[0], count + 4, size};

@@ -4,6 +4,7 @@
  * chunk: a file with a false size is refused before memory is allocated.
  * Libraries are then called for exactly that many bytes. */
 #include "formats/bytes/lz4.h"
+#include "formats/bytes/number.h"
 #include "formats/features.h"
 #include "formats/zarr/zarr.h"
 
@@ -43,10 +44,8 @@ static snow_status check_sums(snow_context *context, const char *name,
             return snow_zarr_fail_damaged(context, name,
                                           "is shorter than its checksum");
         *size -= SUM_BYTES;
-        const unsigned char *at = bytes + *size;
-        uint32_t given = (uint32_t)at[0] | (uint32_t)at[1] << 8 |
-                         (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
-        if (snow_zarr_sum(bytes, *size) != given)
+        if (snow_zarr_sum(bytes, *size) !=
+            snow_number_at(bytes + *size, SUM_BYTES, false))
             return snow_zarr_fail_damaged(context, name,
                                           "does not match its checksum");
     }
@@ -123,8 +122,7 @@ static snow_status expect_lz4(snow_context *context, const char *name,
     if (size < 4 || size > INT_MAX)
         return snow_zarr_fail_damaged(context, name,
                                       "is not compressed by lz4");
-    uint64_t given = (uint64_t)packed[0] | (uint64_t)packed[1] << 8 |
-                     (uint64_t)packed[2] << 16 | (uint64_t)packed[3] << 24;
+    const uint64_t given = snow_number_at(packed, 4, false);
     return given == bytes && bytes <= INT_MAX
                ? SNOW_STATUS_OK
                : snow_zarr_fail_size(context, name, given, bytes);
