@@ -68,6 +68,19 @@ void snow_array_place(const snow_axes *roles, const uint64_t *steps,
         array->first += (uint64_t)channel * steps[roles->channel];
 }
 
+bool snow_array_of_grid(snow_type type, const int64_t dims[3], int64_t channels,
+                        int64_t channel, uint64_t begin, snow_array *out) {
+    const int64_t sizes[4] = {channels, dims[0], dims[1], dims[2]};
+    const size_t size = snow_type_size(type);
+    uint64_t steps[4], all;
+    if (!snow_array_steps(sizes, 4, size, steps, &all) ||
+        !snow_add_u64(all, begin, &out->all))
+        return false;
+    memcpy(out->step, steps + 1, sizeof out->step);
+    out->first = begin + (uint64_t)channel * size;
+    return true;
+}
+
 /* Ten bits of fraction, five of exponent; a float can hold every value. */
 float snow_half_to_float(uint16_t half) {
     uint32_t sign = (uint32_t)(half & 0x8000) << 16;
@@ -132,6 +145,23 @@ static void put_half(const unsigned char *in, uint64_t from, bool big_endian,
     }
 }
 
+void snow_coding_put(snow_coding coding, bool big_endian, size_t size,
+                     const unsigned char *from, uint64_t step,
+                     unsigned char *to, uint64_t to_step, uint64_t count) {
+    switch (coding) {
+    case SNOW_CODING_PLAIN:
+        put_plain(from, step, to, to_step, count, size);
+        break;
+    case SNOW_CODING_HALF:
+        put_half(from, step, big_endian, to, to_step, count);
+        break;
+    case SNOW_CODING_BOOL:
+        for (uint64_t i = 0; i < count; i++)
+            to[i * to_step] = from[i * step] != 0;
+        break;
+    }
+}
+
 /* Copies a block from the front of the buffer to `out`; the innermost loop
  * follows memory, so that whole cache lines are written. */
 static void put_block(const array_reader *reader, const walk block[3],
@@ -149,19 +179,8 @@ static void put_block(const array_reader *reader, const walk block[3],
             const unsigned char *from =
                 reader->buffer + k * z->from + j * y->from;
             unsigned char *to = out + k * z->to + j * y->to;
-            switch (reader->array->coding) {
-            case SNOW_CODING_PLAIN:
-                put_plain(from, x->from, to, x->to, x->count, reader->size);
-                break;
-            case SNOW_CODING_HALF:
-                put_half(from, x->from, reader->array->big_endian, to, x->to,
-                         x->count);
-                break;
-            case SNOW_CODING_BOOL:
-                for (uint64_t i = 0; i < x->count; i++)
-                    to[i * x->to] = from[i * x->from] != 0;
-                break;
-            }
+            snow_coding_put(reader->array->coding, reader->array->big_endian,
+                            reader->size, from, x->from, to, x->to, x->count);
         }
 }
 

@@ -42,6 +42,16 @@ size_t snow_coding_size(snow_coding coding, snow_type type);
 bool snow_array_steps(const int64_t *sizes, int rank, uint64_t value,
                       uint64_t *steps, uint64_t *all);
 
+/* The same of a grid of voxels of so many values each, of which one is taken,
+ * from a byte of the source on: sets first, step and all. */
+bool snow_array_of_grid(snow_type type, const int64_t dims[3], int64_t channels,
+                        int64_t channel, uint64_t begin, snow_array *out);
+
+/* Copies stored values from strides to strides, as they are in memory. */
+void snow_coding_put(snow_coding coding, bool big_endian, size_t size,
+                     const unsigned char *from, uint64_t step,
+                     unsigned char *to, uint64_t to_step, uint64_t count);
+
 /* Completes a reader, as snow_volume_read: applies the options' box, checks
  * that the source can hold the bytes, and makes the volume unless `out` is
  * NULL.  Reads the voxels in the memory order of all volumes, and finishes the

@@ -36,7 +36,7 @@ static bool is_any_of(const char *text, const char *const *list) {
     return false;
 }
 
-snow_axis_hint snow_cf_hint(const cf_words *words) {
+snow_axis_hint snow_cf_hint(const char *name, const cf_attributes *says) {
     static const char *const spaces[] = {"x", "y", "z", NULL};
     static const char *const lines[] = {"x", "lon", "longitude", "rlon", NULL};
     static const char *const times[] = {
@@ -46,16 +46,19 @@ snow_axis_hint snow_cf_hint(const cf_words *words) {
         "days", "month", "months", "yr",     "year",    "years", NULL};
     static const char *const parts[] = {"component", "components", "vector",
                                         NULL};
+    const char *units = says ? says->units : "";
+    const char *axis = says ? says->axis : "";
+    const char *standard = says ? says->standard_name : "";
     snow_axis_hint hint = {0};
-    bool in_space = is_any_of(words->axis, spaces);
-    hint.time = is_same(words->axis, "t") ||
-                (!in_space && (is_same(words->standard_name, "time") ||
-                               strstr(words->units, " since ") ||
-                               is_same(words->name, "time")));
-    hint.components = !in_space && is_any_of(words->name, parts);
-    hint.duration = !in_space && is_any_of(words->units, times);
-    hint.space = in_space || is_any_of(words->name, lines) ||
-                 (*words->units && !is_same(words->units, "1"));
+    bool in_space = is_any_of(axis, spaces);
+    hint.time =
+        is_same(axis, "t") ||
+        (!in_space && (is_same(standard, "time") || strstr(units, " since ") ||
+                       is_same(name, "time")));
+    hint.components = !in_space && is_any_of(name, parts);
+    hint.duration = !in_space && is_any_of(units, times);
+    hint.space =
+        in_space || is_any_of(name, lines) || (*units && !is_same(units, "1"));
     return hint;
 }
 
@@ -165,6 +168,8 @@ static void place_axis(snow_context *context, const cf_axis axes[3], int i,
 void snow_cf_place(snow_context *context, const cf_axis axes[3],
                    const snow_volume_options *options, snow_volume_info *info,
                    snow_uneven *grid) {
+    if (!axes[0].given && !axes[1].given && !axes[2].given)
+        return;
     bool given = snow_spacing_given(options);
     const cf_axis *x = &axes[0];
     *grid = plan_grid(context, axes, info);

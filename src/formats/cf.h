@@ -81,18 +81,16 @@ cf_values snow_cf_values_default(snow_type type);
 cf_values snow_cf_settle(snow_context *context, const cf_attributes *from,
                          snow_type type, bool is_netcdf);
 
-/* Turns stored values into data, missing ones into NaN. */
-void snow_cf_decode(const cf_values *values, int64_t count, double *numbers);
+/* Turns stored coordinates into data, and measures their axis. */
+void snow_cf_take_axis(snow_context *context, const cf_attributes *says,
+                       snow_type type, bool is_netcdf, int64_t count,
+                       double *values, cf_axis *out);
 
 /* What a dimension is by its name, and by attributes of its coordinates
- * (sections 4 and 4.4): time by axis "T", standard_name "time", units "...
- * since
- * ...", or the name "time"; components by the name "component".  Texts may be
- * "". */
-typedef struct cf_words {
-    const char *name, *units, *axis, *standard_name;
-} cf_words;
-snow_axis_hint snow_cf_hint(const cf_words *words);
+ * (sections 4 and 4.4; NULL: it has none): time by axis "T", standard_name
+ * "time", units "... since ...", or the name "time"; components by the name
+ * "component". */
+snow_axis_hint snow_cf_hint(const char *name, const cf_attributes *says);
 
 /* Measures an axis of `count` coordinates, which may fall; `given` stays false
  * if they are not finite or all equal.  Longitudes that wrap rise or fall
@@ -110,12 +108,12 @@ void snow_cf_time(const cf_axis *axis, snow_volume_info *info);
 void snow_cf_name(const char *name, const cf_attributes *says,
                   snow_volume_info *info);
 
-/* Sets spacing, origin and unit from the coordinates of x, y and z.  Axes in
- * another length than x are converted to x's unit; those in another unit (time,
- * or height beside degrees), or in none, get x's spacing, with a warning unless
- * the options give it.  The world's z grows upward: coordinates
- * that grow downward get the other sign.  Plans the grid of uneven axes, whose
- * sizes info->dims become. */
+/* Sets spacing, origin and unit from the coordinates of x, y and z, if there
+ * are any.  Axes in another length than x are converted to x's unit; those in
+ * another unit (time, or height beside degrees), or in none, get x's spacing,
+ * with a warning unless the options give it.  The world's z grows upward:
+ * coordinates that grow downward get the other sign.  Plans the grid of uneven
+ * axes, whose sizes info->dims become. */
 void snow_cf_place(snow_context *context, const cf_axis axes[3],
                    const snow_volume_options *options, snow_volume_info *info,
                    snow_uneven *grid);
@@ -124,9 +122,10 @@ void snow_cf_place(snow_context *context, const cf_axis axes[3],
  * NULL only the sizes are checked. */
 typedef snow_uneven_fn cf_read_fn;
 
-/* Reads them as data: missing ones are NaN, for which integers become floats;
- * sets type, slope and intercept. */
-snow_status snow_cf_read(cf_values *values, cf_read_fn *read, void *user,
+/* Reads them as data on the even grid: missing ones are NaN, for which integers
+ * become floats; sets type, slope and intercept. */
+snow_status snow_cf_read(snow_context *context, const snow_uneven *grid,
+                         cf_values *values, cf_read_fn *read, void *user,
                          const snow_volume_options *options,
                          snow_volume_info *info, snow_volume **out);
 

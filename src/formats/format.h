@@ -129,6 +129,10 @@ snow_status snow_volume_replace_spacing(snow_context *context,
 snow_status snow_volume_finish(snow_context *context, snow_status status,
                                snow_volume *volume, snow_volume **out);
 
+/* Adds a name to a list for messages, as long as there is room. */
+void snow_list_add(char *list, size_t capacity, const char *format, ...)
+    SNOW_PRINTF(3, 4);
+
 /* Gives a volume that was made, or closes it after a failure, whose status it
  * passes on.  `volume` and `out` may be NULL. */
 snow_status snow_volume_give(snow_status status, snow_volume *volume,

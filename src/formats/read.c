@@ -3,6 +3,10 @@
 #include "formats/format.h"
 #include "io/lookup.h"
 
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
 /* The bytes are compared with the source before the voxels get their memory: a
  * header of 400 bytes must not cost gigabytes. */
 snow_status snow_volume_read(snow_source *source,
@@ -113,6 +117,19 @@ snow_status snow_volume_give(snow_status status, snow_volume *volume,
     else
         snow_volume_close(volume);
     return status;
+}
+
+void snow_list_add(char *list, size_t capacity, const char *format, ...) {
+    char text[1024];
+    const size_t used = strlen(list);
+    va_list arguments;
+    va_start(arguments, format);
+    snow_text_vprint(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (used + strlen(text) + 8 < capacity)
+        snprintf(list + used, capacity - used, "%s%s", used ? ", " : "", text);
+    else if (used > 3 && strcmp(list + used - 3, "...") != 0)
+        memcpy(list + used, " ...", 5);
 }
 
 bool snow_format_has_name(const snow_format *format, const char *name) {

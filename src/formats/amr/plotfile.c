@@ -136,13 +136,7 @@ static snow_status take_components(reading *r) {
     SNOW_TRY(wanted_component(r, &wanted));
     for (int64_t i = 0; i < file->components; i++) {
         SNOW_TRY(next_line(r, "the names of its components"));
-        const size_t used = strlen(r->list), length = strlen(r->line);
-        const char *between = used ? ", " : "";
-        if (used + length + 8 < sizeof r->list)
-            snprintf(r->list + used, sizeof r->list - used, "%s%s", between,
-                     r->line);
-        else if (used > 3 && strcmp(r->list + used - 3, "...") != 0)
-            memcpy(r->list + used, " ...", 5);
+        snow_list_add(r->list, sizeof r->list, "%s", r->line);
         if (i < SNOW_CHANNELS_MAX)
             snow_copy_name(r->line, r->named[i].name, sizeof r->named[i].name);
         if (is_wanted(r, r->line, i, wanted)) {

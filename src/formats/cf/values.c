@@ -218,7 +218,8 @@ static bool is_masked(const cf_values *values) {
     return values->fills || values->limited;
 }
 
-void snow_cf_decode(const cf_values *values, int64_t count, double *numbers) {
+/* Missing ones become NaN. */
+static void decode(const cf_values *values, int64_t count, double *numbers) {
     const double end = ldexp(1, 8 * (int)snow_type_size(values->type));
     for (int64_t i = 0; i < count; i++) {
         double value = numbers[i];
@@ -231,6 +232,14 @@ void snow_cf_decode(const cf_values *values, int64_t count, double *numbers) {
                          ? NAN
                          : value * values->scale + values->offset;
     }
+}
+
+void snow_cf_take_axis(snow_context *context, const cf_attributes *says,
+                       snow_type type, bool is_netcdf, int64_t count,
+                       double *values, cf_axis *out) {
+    const cf_values stored = snow_cf_settle(context, says, type, is_netcdf);
+    decode(&stored, count, values);
+    snow_cf_measure(values, count, says, out);
 }
 
 static snow_type float_type(snow_type type) {
@@ -303,61 +312,76 @@ static bool has_any(const cf_values *values, const snow_volume *volume) {
     return found;
 }
 
+/* Voxels as they are stored. */
+typedef struct stored_values {
+    cf_values *values;
+    cf_read_fn *read;
+    void *user;
+} stored_values;
+
 /* Looks for a rare fill value in the whole step, of which a box may be read,
  * so that all boxes have one type.  What cannot be read may have it. */
-static snow_status search(const cf_values *values, cf_read_fn *read, void *user,
+static snow_status search(const stored_values *s,
                           const snow_volume_options *options,
                           const snow_volume_info *info, bool *found) {
     snow_volume_options whole = *options;
     snow_volume_info step = *info;
     snow_volume *volume = NULL;
     memset(whole.crop, 0, sizeof whole.crop);
-    const snow_status status = read(user, &whole, &step, &volume);
+    const snow_status status = s->read(s->user, &whole, &step, &volume);
     if (status == SNOW_STATUS_STOPPED || status == SNOW_STATUS_NO_MEMORY)
         return status;
-    *found = status != SNOW_STATUS_OK || has_any(values, volume);
+    *found = status != SNOW_STATUS_OK || has_any(s->values, volume);
     snow_volume_close(volume);
     return SNOW_STATUS_OK;
 }
 
 /* `info` is of the whole step, `volume` NULL or what was read. */
-static snow_status settle_rare(cf_values *values, cf_read_fn *read, void *user,
+static snow_status settle_rare(const stored_values *s,
                                const snow_volume_options *options,
                                const snow_volume_info *info,
                                const snow_volume *volume) {
     int64_t voxels;
     uint64_t bytes;
     bool found = true;
-    if (!values->rare)
+    if (!s->values->rare)
         return SNOW_STATUS_OK;
     if (snow_volume_count(info->dims, info->type, &voxels, &bytes) &&
         bytes <= SEARCHED_BYTES) {
         if (volume && count_of(volume) == voxels)
-            found = has_any(values, volume);
+            found = has_any(s->values, volume);
         else
-            SNOW_TRY(search(values, read, user, options, info, &found));
+            SNOW_TRY(search(s, options, info, &found));
     }
-    values->rare = false;
+    s->values->rare = false;
     if (!found)
-        values->fills = 0;
+        s->values->fills = 0;
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_cf_read(cf_values *values, cf_read_fn *read, void *user,
-                         const snow_volume_options *options,
-                         snow_volume_info *info, snow_volume **out) {
+/* A box of the file's own voxels. */
+static snow_status read_data(void *user, const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    const stored_values *s = user;
     const snow_volume_info whole = *info;
     snow_volume *volume = NULL;
-    SNOW_TRY(read(user, options, info, out ? &volume : NULL));
-    snow_status status =
-        settle_rare(values, read, user, options, &whole, volume);
-    if (status == SNOW_STATUS_OK && volume && is_masked(values))
+    SNOW_TRY(s->read(s->user, options, info, out ? &volume : NULL));
+    snow_status status = settle_rare(s, options, &whole, volume);
+    if (status == SNOW_STATUS_OK && volume && is_masked(s->values))
         status = blank_volume(
-            values, !memcmp(whole.dims, volume->info.dims, sizeof whole.dims),
-            &volume);
-    if (is_masked(values))
+            s->values,
+            !memcmp(whole.dims, volume->info.dims, sizeof whole.dims), &volume);
+    if (is_masked(s->values))
         info->type = float_type(info->type);
-    info->slope = values->scale;
-    info->intercept = values->offset;
+    info->slope = s->values->scale;
+    info->intercept = s->values->offset;
     return snow_volume_give(status, volume, out);
+}
+
+snow_status snow_cf_read(snow_context *context, const snow_uneven *grid,
+                         cf_values *values, cf_read_fn *read, void *user,
+                         const snow_volume_options *options,
+                         snow_volume_info *info, snow_volume **out) {
+    stored_values s = {values, read, user};
+    return snow_uneven_read(context, grid, options, read_data, &s, info, out);
 }

@@ -290,10 +290,8 @@ static snow_status read_by_library(const box_job *job) {
     const snow_status status =
         read ? SNOW_STATUS_OK
              : snow_hdf5_fail(job->context, "its voxels cannot be read");
-    if (memory >= 0)
-        H5Sclose(memory);
-    if (space >= 0)
-        H5Sclose(space);
+    snow_hdf5_drop(memory);
+    snow_hdf5_drop(space);
     return status;
 }
 
@@ -304,8 +302,7 @@ static bool describe(box_job *job, hid_t plan, H5D_layout_t *layout) {
     hid_t space = H5Dget_space(job->set);
     const bool sized = space >= 0 && H5Sget_simple_extent_dims(
                                          space, job->sizes, NULL) == job->axes;
-    if (space >= 0)
-        H5Sclose(space);
+    snow_hdf5_drop(space);
     *layout = H5Pget_layout(plan);
     job->width = H5Tget_size(job->type);
     job->stored_width = H5Tget_size(job->stored);
@@ -369,8 +366,7 @@ snow_status snow_hdf5_read_box(snow_context *context, const hdf5_file *file,
     }
     if (status == SNOW_STATUS_OK && layout != H5D_LAYOUT_ERROR)
         status = read_by_library(&job);
-    if (plan >= 0)
-        H5Pclose(plan);
+    snow_hdf5_drop(plan);
     if (job.stored >= 0)
         H5Tclose(job.stored);
     return status;

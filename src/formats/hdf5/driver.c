@@ -34,19 +34,18 @@ struct hdf5_file {
     void *handler_data;
 };
 
-/* The record of an open file; it begins with libhdf5's own. */
-typedef struct hdf5_handle {
-    H5FD_t base;
-    snow_context *context;
-    snow_seekable *bytes;
-    haddr_t end; /* of the address space that libhdf5 uses */
-} hdf5_handle;
-
 /* Passed to the driver in the access properties, which copy it. */
 typedef struct hdf5_pass {
     snow_context *context;
     snow_seekable *bytes;
 } hdf5_pass;
+
+/* The record of an open file; it begins with libhdf5's own. */
+typedef struct hdf5_handle {
+    H5FD_t base;
+    hdf5_pass from;
+    haddr_t end; /* of the address space that libhdf5 uses */
+} hdf5_handle;
 
 static H5FD_t *open_handle(const char *name, unsigned flags, hid_t access,
                            haddr_t most) {
@@ -57,14 +56,13 @@ static H5FD_t *open_handle(const char *name, unsigned flags, hid_t access,
     hdf5_handle *handle = snow_allocate_clear(pass->context, sizeof *handle);
     if (!handle)
         return NULL;
-    handle->context = pass->context;
-    handle->bytes = pass->bytes;
+    handle->from = *pass;
     return &handle->base;
 }
 
 static herr_t close_handle(H5FD_t *base) {
     hdf5_handle *handle = (hdf5_handle *)base;
-    snow_release(handle->context, handle);
+    snow_release(handle->from.context, handle);
     return 0;
 }
 
@@ -72,7 +70,7 @@ static herr_t close_handle(H5FD_t *base) {
 static int compare_handles(const H5FD_t *a, const H5FD_t *b) {
     const hdf5_handle *x = (const hdf5_handle *)a;
     const hdf5_handle *y = (const hdf5_handle *)b;
-    return (x->bytes > y->bytes) - (x->bytes < y->bytes);
+    return (x->from.bytes > y->from.bytes) - (x->from.bytes < y->from.bytes);
 }
 
 static herr_t query(const H5FD_t *base, unsigned long *flags) {
@@ -94,7 +92,7 @@ static herr_t set_end(H5FD_t *base, H5FD_mem_t type, haddr_t end) {
 
 static haddr_t get_size(const H5FD_t *base, H5FD_mem_t type) {
     (void)type;
-    return snow_seekable_size(((const hdf5_handle *)base)->bytes);
+    return snow_seekable_size(((const hdf5_handle *)base)->from.bytes);
 }
 
 /* Addresses beyond the end of the file read as zeros, as with libhdf5's own
@@ -106,7 +104,7 @@ static herr_t read_bytes(H5FD_t *base, H5FD_mem_t type, hid_t transfer,
                          haddr_t from, size_t size, void *bytes) {
     const hdf5_handle *handle = (const hdf5_handle *)base;
     (void)transfer;
-    size_t got = snow_seekable_read(handle->bytes, from, bytes, size);
+    size_t got = snow_seekable_read(handle->from.bytes, from, bytes, size);
     if (got < size && (type == H5FD_MEM_DRAW || size - got > BEHIND_MOST))
         return -1;
     memset((unsigned char *)bytes + got, 0, size - got);
@@ -115,12 +113,7 @@ static herr_t read_bytes(H5FD_t *base, H5FD_mem_t type, hid_t transfer,
 
 static herr_t write_nothing(H5FD_t *base, H5FD_mem_t type, hid_t transfer,
                             haddr_t at, size_t size, const void *bytes) {
-    (void)base;
-    (void)type;
-    (void)transfer;
-    (void)at;
-    (void)size;
-    (void)bytes;
+    (void)base, (void)type, (void)transfer, (void)at, (void)size, (void)bytes;
     return -1;
 }
 

@@ -37,8 +37,7 @@ static snow_type type_of(hid_t type) {
         snow_type found = base < 0 ? SNOW_TYPE_NONE : type_of(base);
         if (found == SNOW_TYPE_INT8 && H5Tget_nmembers(type) == 2)
             found = SNOW_TYPE_UINT8; /* false and true */
-        if (base >= 0)
-            H5Tclose(base);
+        snow_hdf5_drop(base);
         return found;
     }
     default:
@@ -54,10 +53,8 @@ bool snow_hdf5_describe(hid_t id, hdf5_set *out) {
                  H5Sget_simple_extent_dims(space, out->sizes, NULL) == axes;
     out->axes = axes;
     out->id = id;
-    if (type >= 0)
-        H5Tclose(type);
-    if (space >= 0)
-        H5Sclose(space);
+    snow_hdf5_drop(type);
+    snow_hdf5_drop(space);
     return right;
 }
 
@@ -81,16 +78,10 @@ static bool is_wanted(const survey *s, const hdf5_set *set) {
 
 static void note(survey *s, const char *name, const hdf5_set *set) {
     char sizes[128];
-    size_t used = strlen(s->list);
     if (!s->found++)
         snprintf(s->first, sizeof s->first, "/%s", name);
     spell_sizes(set, sizes, sizeof sizes);
-    if (used + strlen(name) + strlen(sizes) + 8 < sizeof s->list)
-        snprintf(s->list + used, sizeof s->list - used, "%s/%s (%s)",
-                 used ? ", " : "", name, sizes);
-    else if (used + 4 < sizeof s->list &&
-             strcmp(s->list + used - 3, "...") != 0)
-        memcpy(s->list + used, " ...", 5);
+    snow_list_add(s->list, sizeof s->list, "/%s (%s)", name, sizes);
 }
 
 static herr_t look(hid_t file, const char *name, const H5O_info_t *info,

@@ -157,11 +157,10 @@ static snow_status read_scale(const scales *s, hid_t scale, hsize_t count,
         return snow_fail_within(context, status, "the coordinates of an axis");
     }
     snow_hdf5_attributes(s->file, scale, &says);
-    const cf_values stored = snow_cf_settle(context, &says, set.type, false);
-    snow_cf_decode(&stored, (int64_t)points, values);
-    snow_cf_release(context, out,
-                    1); /* of a damaged file that lists it twice */
-    snow_cf_measure(values, (int64_t)points, &says, out);
+    /* A damaged file may list it twice. */
+    snow_cf_release(context, out, 1);
+    snow_cf_take_axis(context, &says, set.type, false, (int64_t)points, values,
+                      out);
     return SNOW_STATUS_OK;
 }
 
@@ -176,8 +175,7 @@ static snow_axis_hint hint_of(const scales *s, hid_t scale, const char *path) {
     const char *slash = strrchr(path, '/');
     cf_attributes says;
     snow_hdf5_attributes(s->file, scale, &says);
-    return snow_cf_hint(&(cf_words){slash ? slash + 1 : path, says.units,
-                                    says.axis, says.standard_name});
+    return snow_cf_hint(slash ? slash + 1 : path, &says);
 }
 
 /* The times of a dimension without coordinates (WRF) are those of any variable
@@ -195,8 +193,7 @@ static snow_status read_dates(const scales *s, hid_t scale,
             read_text(s->file, along, "units", units, sizeof units);
         if (strstr(units, " since "))
             status = read_scale(s, along, steps, out);
-        if (along >= 0)
-            H5Oclose(along);
+        snow_hdf5_drop(along);
     }
     return status;
 }
@@ -231,8 +228,7 @@ static bool is_use(hid_t type) {
         bool right = member >= 0 && at <= size &&
                      H5Tget_size(member) <= size - at &&
                      H5Tget_class(member) == (i ? H5T_INTEGER : H5T_REFERENCE);
-        if (member >= 0)
-            H5Tclose(member);
+        snow_hdf5_drop(member);
         if (!right)
             return false;
     }
@@ -287,17 +283,18 @@ static snow_status read_axis_labels(scales *s) {
     for (int i = 0; i < s->set->axes; i++) {
         snow_axis_hint *hint = &s->hints[s->set->axes - 1 - i];
         cf_axis *axis = &s->axes[s->set->axes - 1 - i];
-        const cf_words words = {label, "", label, ""};
+        cf_attributes says;
+        snow_cf_attributes_begin(&says);
         snow_hdf5_text(s->file, s->set->id, "DIMENSION_LABELS", (size_t)i,
                        label, sizeof label);
         if (!*label || axis->coordinates || hint->time || hint->space ||
             hint->components)
             continue;
-        *hint = snow_cf_hint(&words);
+        snprintf(says.axis, sizeof says.axis, "%.15s", label);
+        *hint = snow_cf_hint(label, &says);
         snprintf(path, sizeof path, "%.*s%s",
                  (int)(strrchr(set, '/') - set) + 1, set, label);
-        hid_t beside = strchr(label, '/') || H5Lexists(snow_hdf5_id(s->file),
-                                                       path, H5P_DEFAULT) <= 0
+        hid_t beside = strchr(label, '/')
                            ? -1
                            : H5Dopen2(snow_hdf5_id(s->file), path, H5P_DEFAULT);
         if (beside < 0)
@@ -358,32 +355,23 @@ static void place_by_scales(snow_context *context, const hdf5_axes *axes,
                             const snow_volume_options *options,
                             snow_volume_info *info, snow_uneven *grid) {
     cf_axis space[3] = {{0}};
-    bool any = false;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         if (axes->roles.space[i] >= 0)
             space[i] = axes->scales[axes->roles.space[i]];
-        any |= space[i].given;
-    }
-    if (any)
-        snow_cf_place(context, space, options, info, grid);
+    snow_cf_place(context, space, options, info, grid);
 }
 
 void snow_hdf5_place(snow_context *context, const hdf5_file *file,
                      const hdf5_set *set, const hdf5_axes *axes,
                      const snow_volume_options *options, snow_volume_info *info,
                      snow_uneven *grid) {
-    char group[HDF5_NAME_BYTES];
     if (place_by_size(set, info) || place_by_mesh(file, set->id, set, info) ||
         snow_hdf5_place_image(file, set, info) ||
         snow_hdf5_place_imaris(file, set, info))
         return;
-    memcpy(group, set->path, sizeof group);
-    char *slash = strrchr(group, '/');
-    slash[slash == group] = 0;
-    hid_t parent = H5Oopen(snow_hdf5_id(file), group, H5P_DEFAULT);
+    hid_t parent = snow_hdf5_above(file, set, 1);
     bool placed = parent >= 0 && place_by_mesh(file, parent, set, info);
-    if (parent >= 0)
-        H5Oclose(parent);
+    snow_hdf5_drop(parent);
     if (!placed)
         place_by_scales(context, axes, options, info, grid);
 }

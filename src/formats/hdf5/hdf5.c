@@ -27,48 +27,31 @@ static bool probe_hdf5(const unsigned char *bytes, size_t size) {
 #define UNWRITTEN_BYTES ((uint64_t)256 << 20)
 
 static hid_t native_type(snow_type type) {
-    switch (type) {
-    case SNOW_TYPE_INT8:
-        return H5T_NATIVE_INT8;
-    case SNOW_TYPE_UINT8:
-        return H5T_NATIVE_UINT8;
-    case SNOW_TYPE_INT16:
-        return H5T_NATIVE_INT16;
-    case SNOW_TYPE_UINT16:
-        return H5T_NATIVE_UINT16;
-    case SNOW_TYPE_INT32:
-        return H5T_NATIVE_INT32;
-    case SNOW_TYPE_UINT32:
-        return H5T_NATIVE_UINT32;
-    case SNOW_TYPE_INT64:
-        return H5T_NATIVE_INT64;
-    case SNOW_TYPE_UINT64:
-        return H5T_NATIVE_UINT64;
-    case SNOW_TYPE_FLOAT32:
-        return H5T_NATIVE_FLOAT;
-    default:
-        return H5T_NATIVE_DOUBLE;
-    }
+    const hid_t types[] = {[SNOW_TYPE_INT8] = H5T_NATIVE_INT8,
+                           [SNOW_TYPE_UINT8] = H5T_NATIVE_UINT8,
+                           [SNOW_TYPE_INT16] = H5T_NATIVE_INT16,
+                           [SNOW_TYPE_UINT16] = H5T_NATIVE_UINT16,
+                           [SNOW_TYPE_INT32] = H5T_NATIVE_INT32,
+                           [SNOW_TYPE_UINT32] = H5T_NATIVE_UINT32,
+                           [SNOW_TYPE_INT64] = H5T_NATIVE_INT64,
+                           [SNOW_TYPE_UINT64] = H5T_NATIVE_UINT64,
+                           [SNOW_TYPE_FLOAT32] = H5T_NATIVE_FLOAT,
+                           [SNOW_TYPE_FLOAT64] = H5T_NATIVE_DOUBLE};
+    return types[type];
 }
 
 /* Filters that are usual (the HDF Group's list of registered ones). */
 static const char *filter_name(int filter) {
-    switch (filter) {
-    case 32001:
-        return " (Blosc)";
-    case 32004:
-        return " (LZ4)";
-    case 32008:
-        return " (Bitshuffle)";
-    case 32013:
-        return " (ZFP)";
-    case 32015:
-        return " (Zstandard)";
-    case 32026:
-        return " (Blosc2)";
-    default:
-        return "";
-    }
+    static const struct {
+        int filter;
+        const char *name;
+    } names[] = {{32001, " (Blosc)"},      {32004, " (LZ4)"},
+                 {32008, " (Bitshuffle)"}, {32013, " (ZFP)"},
+                 {32015, " (Zstandard)"},  {32026, " (Blosc2)"}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (names[i].filter == filter)
+            return names[i].name;
+    return "";
 }
 
 /* Data in other files would be missing, or could be read from anywhere; data
@@ -195,8 +178,7 @@ static void note_chunks(const hdf5_job *job, const snow_region *region) {
     const hid_t plan = H5Dget_create_plist(job->set->id);
     const bool chunked = plan >= 0 && H5Pget_layout(plan) == H5D_CHUNKED &&
                          H5Pget_chunk(plan, axes, chunk) == axes;
-    if (plan >= 0)
-        H5Pclose(plan);
+    snow_hdf5_drop(plan);
     for (int i = 0; i < 3 && chunked; i++)
         if (job->axes.roles.space[i] >= 0)
             size[i] = (int64_t)chunk[axes - 1 - job->axes.roles.space[i]];
@@ -223,13 +205,6 @@ static snow_status read_stored(void *user, const snow_volume_options *options,
     return snow_volume_give(status, volume, out);
 }
 
-/* The same as data, with missing ones. */
-static snow_status read_voxels(void *user, const snow_volume_options *options,
-                               snow_volume_info *info, snow_volume **out) {
-    hdf5_job *job = user;
-    return snow_cf_read(&job->values, read_stored, job, options, info, out);
-}
-
 static snow_status read_job(hdf5_job *job, const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out) {
     const hdf5_file *file = job->file;
@@ -244,10 +219,8 @@ static snow_status read_job(hdf5_job *job, const snow_volume_options *options,
                     &job->grid);
     SNOW_TRY(snow_hdf5_mean(job->context, file, job->set, &job->axes, &says,
                             info, &job->values));
-    return snow_uneven_any(&job->grid)
-               ? snow_uneven_read(job->context, &job->grid, options,
-                                  read_voxels, job, info, out)
-               : read_voxels(job, options, info, out);
+    return snow_cf_read(job->context, &job->grid, &job->values, read_stored,
+                        job, options, info, out);
 }
 
 static snow_status read_set(snow_context *context, const hdf5_file *file,

@@ -32,6 +32,12 @@
 
 typedef struct hdf5_file hdf5_file;
 
+/* Closes what libhdf5 has opened, if it has. */
+static inline void snow_hdf5_drop(hid_t id) {
+    if (id >= 0)
+        H5Idec_ref(id);
+}
+
 /* A numeric array of a file. */
 typedef struct hdf5_set {
     hid_t id; /* the data set */
@@ -72,6 +78,9 @@ snow_status snow_hdf5_visit(snow_context *context, hid_t file,
 /* Reads sizes and type of a data set; returns false if it is not a numeric
  * array. */
 bool snow_hdf5_describe(hid_t id, hdf5_set *out);
+
+/* Opens the group `levels` above the data set; below 0: there is none. */
+hid_t snow_hdf5_above(const hdf5_file *file, const hdf5_set *set, int levels);
 
 /* Opens the requested data set, or the only volume of the file.  The caller
  * closes the set's id.  Errors: SNOW_STATUS_BAD_INPUT, SNOW_STATUS_BAD_USAGE

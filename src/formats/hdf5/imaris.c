@@ -38,14 +38,10 @@ static double read_number(const hdf5_file *file, hid_t object, const char *name,
 
 /* Opens the group of the channel; -1: the data set is not of Imaris. */
 static hid_t open_channel(const hdf5_file *file, const hdf5_set *set) {
-    char path[HDF5_NAME_BYTES];
-    memcpy(path, set->path, sizeof path);
-    char *slash = strrchr(path, '/');
-    if (strncmp(path, "/DataSet/ResolutionLevel ", 25) != 0 ||
-        strcmp(slash, "/Data") != 0 || set->axes != 3)
-        return -1;
-    *slash = 0;
-    return H5Oopen(snow_hdf5_id(file), path, H5P_DEFAULT);
+    const bool is_imaris =
+        !strncmp(set->path, "/DataSet/ResolutionLevel ", 25) &&
+        !strcmp(strrchr(set->path, '/'), "/Data") && set->axes == 3;
+    return is_imaris ? snow_hdf5_above(file, set, 1) : -1;
 }
 
 void snow_hdf5_trim_imaris(const hdf5_file *file, hdf5_set *set) {
@@ -55,16 +51,15 @@ void snow_hdf5_trim_imaris(const hdf5_file *file, hdf5_set *set) {
         if (size >= 1 && size < (double)set->sizes[2 - i])
             set->sizes[2 - i] = (hsize_t)size;
     }
-    if (channel >= 0)
-        H5Oclose(channel);
+    snow_hdf5_drop(channel);
 }
 
 bool snow_hdf5_place_imaris(const hdf5_file *file, const hdf5_set *set,
                             snow_volume_info *info) {
-    const hid_t id = snow_hdf5_id(file), channel = open_channel(file, set);
-    hid_t image = channel >= 0 && H5Lexists(id, "DataSetInfo", H5P_DEFAULT) > 0
-                      ? H5Oopen(id, "DataSetInfo/Image", H5P_DEFAULT)
-                      : -1;
+    const hid_t channel = open_channel(file, set);
+    const hid_t image = channel < 0 ? -1
+                                    : H5Oopen(snow_hdf5_id(file),
+                                              "DataSetInfo/Image", H5P_DEFAULT);
     char unit[32] = "";
     double step[3], low[3];
     bool given = image >= 0;
@@ -81,10 +76,8 @@ bool snow_hdf5_place_imaris(const hdf5_file *file, const hdf5_set *set,
     if (given)
         read_letters(file, image, "Unit", unit);
     memcpy(info->unit, unit, strnlen(unit, sizeof info->unit - 1));
-    if (image >= 0)
-        H5Oclose(image);
-    if (channel >= 0)
-        H5Oclose(channel);
+    snow_hdf5_drop(image);
+    snow_hdf5_drop(channel);
     return given;
 }
 

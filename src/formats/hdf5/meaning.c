@@ -116,9 +116,7 @@ static void read_any(const hdf5_file *file, hid_t object,
         snow_hdf5_text(file, object, *names, 0, out, capacity);
 }
 
-/* Opens the group `levels` above the data set; below 0: there is none. */
-static hid_t open_above(const hdf5_file *file, const hdf5_set *set,
-                        int levels) {
+hid_t snow_hdf5_above(const hdf5_file *file, const hdf5_set *set, int levels) {
     char path[HDF5_NAME_BYTES];
     memcpy(path, set->path, sizeof path);
     for (int i = 0; i < levels; i++) {
@@ -155,7 +153,7 @@ static void take_si(const hdf5_file *file, const hdf5_set *set,
         !isfinite(factor) || factor == 0)
         return;
     bool given = snow_hdf5_numbers(set->id, "unitDimension", 7, powers) == 7;
-    hid_t record = given ? -1 : open_above(file, set, 1);
+    hid_t record = given ? -1 : snow_hdf5_above(file, set, 1);
     if (record >= 0) {
         given = snow_hdf5_numbers(record, "unitDimension", 7, powers) == 7;
         H5Oclose(record);
@@ -172,7 +170,7 @@ static void take_time(const hdf5_file *file, const hdf5_set *set,
     static const char *const units[] = {"time_units", "time_unit", NULL};
     for (int level = 0; level < 6 && isnan(info->time_value); level++) {
         double time, factor;
-        hid_t group = open_above(file, set, level);
+        hid_t group = snow_hdf5_above(file, set, level);
         if (group < 0)
             return;
         if (snow_hdf5_numbers(group, "time", 1, &time) == 1 ||

@@ -41,14 +41,11 @@ static hid_t open_root(const hdf5_file *file, const hdf5_set *set) {
 bool snow_hdf5_active_image(const hdf5_file *file, char path[HDF5_NAME_BYTES]) {
     static const char *const groups[] = {ROOT "/PointData", ROOT "/CellData"};
     const hid_t id = snow_hdf5_id(file);
-    const bool is_vtk = H5Lexists(id, ROOT, H5P_DEFAULT) > 0;
     char name[128];
     bool found = false;
     hsize_t arrays = 0;
     for (int i = 0; i < 2; i++) {
-        hid_t group = is_vtk && H5Lexists(id, groups[i], H5P_DEFAULT) > 0
-                          ? H5Gopen2(id, groups[i], H5P_DEFAULT)
-                          : -1;
+        hid_t group = H5Gopen2(id, groups[i], H5P_DEFAULT);
         H5G_info_t about;
         if (group < 0)
             continue;
@@ -87,37 +84,31 @@ bool snow_hdf5_place_image(const hdf5_file *file, const hdf5_set *set,
     return given;
 }
 
-/* Opens the times of the steps and counts them; -1 without them. */
-static hid_t open_times(hid_t root, hsize_t *count) {
-    hid_t times = H5Lexists(root, "Steps", H5P_DEFAULT) > 0 &&
-                          H5Lexists(root, "Steps/Values", H5P_DEFAULT) > 0
-                      ? H5Dopen2(root, "Steps/Values", H5P_DEFAULT)
-                      : -1;
-    hid_t space = times >= 0 ? H5Dget_space(times) : -1;
-    bool line = space >= 0 && H5Sget_simple_extent_ndims(space) == 1 &&
-                H5Sget_simple_extent_dims(space, count, NULL) == 1;
-    if (space >= 0)
-        H5Sclose(space);
+/* Opens the times of the steps of the data set and counts them; -1 without
+ * them. */
+static hid_t open_times(const hdf5_file *file, const hdf5_set *set,
+                        hsize_t *count) {
+    const hid_t root = open_root(file, set);
+    const hid_t times =
+        root >= 0 ? H5Dopen2(root, "Steps/Values", H5P_DEFAULT) : -1;
+    const hid_t space = times >= 0 ? H5Dget_space(times) : -1;
+    const bool line = space >= 0 && H5Sget_simple_extent_ndims(space) == 1 &&
+                      H5Sget_simple_extent_dims(space, count, NULL) == 1;
+    snow_hdf5_drop(space);
+    snow_hdf5_drop(root);
     if (line)
         return times;
-    if (times >= 0)
-        H5Dclose(times);
+    snow_hdf5_drop(times);
     return -1;
 }
 
 snow_status snow_hdf5_time_image(snow_context *context, const hdf5_file *file,
                                  const hdf5_set *set, snow_volume_info *info) {
-    hid_t root = open_root(file, set);
-    if (root < 0)
-        return SNOW_STATUS_OK;
     hsize_t count = 0, at = (hsize_t)info->time, one = 1;
-    hid_t times = open_times(root, &count);
-    H5Oclose(root);
-    if (times < 0)
-        return SNOW_STATUS_OK;
+    const hid_t times = open_times(file, set, &count);
     double value = 0;
     snow_status status = SNOW_STATUS_OK;
-    if (at < count) {
+    if (times >= 0 && at < count) {
         status = snow_hdf5_read_box(context, file, times, H5T_NATIVE_DOUBLE, 1,
                                     &at, &one, &value);
         if (status == SNOW_STATUS_OK)
@@ -125,7 +116,7 @@ snow_status snow_hdf5_time_image(snow_context *context, const hdf5_file *file,
         else
             snow_fail_within(context, status, "the times of its steps");
     }
-    H5Dclose(times);
+    snow_hdf5_drop(times);
     return status;
 }
 
@@ -133,16 +124,10 @@ snow_status snow_hdf5_time_image(snow_context *context, const hdf5_file *file,
  * components. */
 void snow_hdf5_hint_image(const hdf5_file *file, const hdf5_set *set,
                           snow_axis_hint hints[HDF5_MOST_AXES]) {
-    hid_t root = open_root(file, set);
-    if (root < 0)
-        return;
     hsize_t count = 0;
-    hid_t times = open_times(root, &count);
-    H5Oclose(root);
-    if (times < 0)
-        return;
-    H5Dclose(times);
-    if (set->axes < 4 || set->sizes[0] != count)
+    const hid_t times = open_times(file, set, &count);
+    snow_hdf5_drop(times);
+    if (times < 0 || set->axes < 4 || set->sizes[0] != count)
         return;
     hints[set->axes - 1].time = true;
     if (set->axes == 4)

@@ -200,16 +200,11 @@ static snow_status read_file(snow_source *source, const bov_header *h,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
     snow_source *data;
-    uint64_t steps[4];
-    const size_t size = snow_type_size(h->type);
-    const int64_t sizes[4] = {h->components, dims[0], dims[1], dims[2]};
     snow_array array = {.big_endian = h->big_endian};
-    array.first = (uint64_t)h->offset + (uint64_t)channel * size;
-    if (!snow_array_steps(sizes, 4, size, steps, &array.all) ||
-        !snow_add_u64(array.all, (uint64_t)h->offset, &array.all))
+    if (!snow_array_of_grid(h->type, dims, h->components, channel,
+                            (uint64_t)h->offset, &array))
         return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
                          "its sizes are too large for any file; correct them");
-    memcpy(array.step, steps + 1, sizeof array.step);
     memcpy(info->dims, dims, sizeof info->dims);
     SNOW_TRY(snow_source_open_sibling(source, name, &data));
     snow_status status = snow_array_read(data, options, &array, info, out);

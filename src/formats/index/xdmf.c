@@ -141,18 +141,12 @@ static snow_status read_raw(const xdmf_values *v,
                             snow_volume_info *info, snow_volume **out) {
     const xdmf_file *f = v->file;
     const xdmf_item *item = &f->kept.item;
-    const size_t size = snow_type_size(item->type);
-    const int64_t sizes[4] = {f->kept.vector ? 3 : 1, v->dims[0], v->dims[1],
-                              v->dims[2]};
     snow_array array = {.big_endian = item->big_endian};
-    uint64_t steps[4];
     snow_source *data;
-    array.first = (uint64_t)item->seek + (uint64_t)v->channel * size;
-    if (!snow_array_steps(sizes, 4, size, steps, &array.all) ||
-        !snow_add_u64(array.all, (uint64_t)item->seek, &array.all))
+    if (!snow_array_of_grid(item->type, v->dims, f->kept.vector ? 3 : 1,
+                            v->channel, (uint64_t)item->seek, &array))
         return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
                          "its sizes are too large for any file; correct them");
-    memcpy(array.step, steps + 1, sizeof array.step);
     array.more = f->attributes > 1; /* their values may stand behind */
     SNOW_TRY(snow_source_open_sibling(f->source, item->text, &data));
     snow_status status = snow_array_read(data, options, &array, info, out);
@@ -224,8 +218,8 @@ static snow_status read_grid(xdmf_file *f, vtk_grid *grid,
     memcpy(v.dims, grid->uneven.count, sizeof v.dims);
     info->times = 1;
     info->time = 0;
-    SNOW_TRY(snow_vtk_read(f->context, grid, f->options, read_values, &v, info,
-                           out));
+    SNOW_TRY(snow_uneven_read(f->context, &grid->uneven, f->options,
+                              read_values, &v, info, out));
     info->times = series.times;
     info->time = series.time;
     const double time =

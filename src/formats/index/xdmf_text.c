@@ -79,10 +79,8 @@ static void begin_attribute(xdmf_file *f, const char **attributes) {
     f->in_attribute =
         !f->now.found &&
         (!f->options->dataset || !strcmp(f->options->dataset, f->attribute));
-    size_t used = strlen(f->seen);
-    if (f->steps == 0 && used + strlen(f->attribute) + 3 < sizeof f->seen)
-        snprintf(f->seen + used, sizeof f->seen - used, "%s%s",
-                 used ? ", " : "", f->attribute);
+    if (f->steps == 0)
+        snow_list_add(f->seen, sizeof f->seen, "%s", f->attribute);
 }
 
 static snow_type type_of(const char *kind, int64_t bytes) {

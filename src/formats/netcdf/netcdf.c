@@ -34,17 +34,13 @@ static bool is_volume(const netcdf_header *header, const netcdf_variable *v,
     return wide >= axes;
 }
 
-/* Appends the name of a variable and its sizes to the list. */
 static void note(const netcdf_header *header, const netcdf_variable *v,
                  char *list, size_t capacity) {
-    size_t used = strlen(list);
     char sizes[128] = "";
     for (int64_t i = 0, at = 0; i < v->axes && at < 100; i++)
         at += snprintf(sizes + at, sizeof sizes - (size_t)at, "%s%lld",
                        i ? "x" : "", (long long)size_of(header, v, i));
-    if (used + strlen(v->name) + strlen(sizes) + 8 < capacity)
-        snprintf(list + used, capacity - used, "%s%s (%s)", used ? ", " : "",
-                 v->name, sizes);
+    snow_list_add(list, capacity, "%s (%s)", v->name, sizes);
 }
 
 /* The only variable with three axes or, if there is none, with as many beside
@@ -144,7 +140,7 @@ static const netcdf_variable *coordinates_of(const netcdf_header *header,
                                              int64_t dimension,
                                              cf_attributes *says) {
     const char *name = header->dimensions[dimension].name;
-    const bool is_time = snow_cf_hint(&(cf_words){name, "", "", ""}).time;
+    const bool is_time = snow_cf_hint(name, NULL).time;
     const netcdf_variable *found = NULL;
     for (int64_t i = 0; i < header->variable_count; i++) {
         const netcdf_variable *v = &header->variables[i];
@@ -182,10 +178,8 @@ static snow_status read_axis(const netcdf_header *header, snow_seekable *bytes,
         snow_release(header->context, values);
         return SNOW_STATUS_OK;
     }
-    const cf_values stored =
-        snow_cf_settle(header->context, &says, v->type, true);
-    snow_cf_decode(&stored, count, values);
-    snow_cf_measure(values, count, &says, out);
+    snow_cf_take_axis(header->context, &says, v->type, true, count, values,
+                      out);
     return SNOW_STATUS_OK;
 }
 
@@ -202,9 +196,7 @@ static snow_status assign_axes(const netcdf_header *header,
         int64_t dimension = v->axis[v->axes - 1 - i];
         cf_attributes says;
         coordinates_of(header, bytes, dimension, &says);
-        hints[i] = snow_cf_hint(&(cf_words){header->dimensions[dimension].name,
-                                            says.units, says.axis,
-                                            says.standard_name});
+        hints[i] = snow_cf_hint(header->dimensions[dimension].name, &says);
     }
     if (snow_axes_assign((int)v->axes, sizes, hints, out))
         return SNOW_STATUS_OK;
@@ -261,25 +253,12 @@ static snow_status describe_variable(netcdf_job *job,
     snow_array_place(&roles, steps, channel, info, array);
     array->big_endian = true;
     array->more = true;
-    if (job->axes[0].given || job->axes[1].given || job->axes[2].given)
-        snow_cf_place(header->context, job->axes, options, info, &job->grid);
+    snow_cf_place(header->context, job->axes, options, info, &job->grid);
     return SNOW_STATUS_OK;
 }
 
 static size_t copy_held(void *user, uint64_t at, void *bytes, size_t size) {
     return snow_seekable_read(user, at, bytes, size);
-}
-
-typedef size_t copy_fn(void *user, uint64_t at, void *bytes, size_t size);
-
-/* Opens the bytes anew, at their beginning. */
-static snow_status open_again(const netcdf_job *job, copy_fn *copy,
-                              snow_source **out) {
-    const snow_bytes_behind behind = {.read_at = copy,
-                                      .user = job->bytes,
-                                      .size = snow_seekable_size(job->bytes)};
-    return snow_source_open_with(snow_source_context(job->source),
-                                 snow_source_name(job->source), &behind, out);
 }
 
 /* Reads a box of stored voxels: from the source if that is still before them,
@@ -288,8 +267,13 @@ static snow_status read_array(void *user, const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
     netcdf_job *job = user;
     snow_source *again = NULL;
+    const snow_bytes_behind behind = {.read_at = copy_held,
+                                      .user = job->bytes,
+                                      .size = snow_seekable_size(job->bytes)};
     if (job->done || snow_seekable_held(job->bytes))
-        SNOW_TRY(open_again(job, copy_held, &again));
+        SNOW_TRY(snow_source_open_with(snow_source_context(job->source),
+                                       snow_source_name(job->source), &behind,
+                                       &again));
     job->done |= out != NULL;
     snow_status status = snow_array_read(again ? again : job->source, options,
                                          &job->array, info, out);
@@ -297,20 +281,11 @@ static snow_status read_array(void *user, const snow_volume_options *options,
     return status;
 }
 
-/* Reads a box of the file's own voxels as data, with missing ones. */
-static snow_status read_voxels(void *user, const snow_volume_options *options,
-                               snow_volume_info *info, snow_volume **out) {
-    netcdf_job *job = user;
-    return snow_cf_read(&job->values, read_array, job, options, info, out);
-}
-
 static snow_status read_job(netcdf_job *job, const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out) {
     SNOW_TRY(describe_variable(job, options, info));
-    return snow_uneven_any(&job->grid)
-               ? snow_uneven_read(job->header->context, &job->grid, options,
-                                  read_voxels, job, info, out)
-               : read_voxels(job, options, info, out);
+    return snow_cf_read(job->header->context, &job->grid, &job->values,
+                        read_array, job, options, info, out);
 }
 
 static void look_for_minc(void *user, const char *name,
@@ -338,16 +313,13 @@ static snow_status read_file(snow_source *source, snow_seekable *bytes,
                              const netcdf_header *header,
                              snow_volume_info *info, snow_volume **out) {
     netcdf_job job = {.source = source, .bytes = bytes, .header = header};
-    snow_volume *volume = NULL;
     if (is_minc(header, bytes))
         return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
                          "is a MINC file, whose values are scaled slice by "
                          "slice; convert it with mnc2nii");
     SNOW_TRY(find_variable(header, options->dataset, &job.variable));
-    snow_status status = read_job(&job, options, info, out ? &volume : NULL);
+    snow_status status = read_job(&job, options, info, out);
     snow_cf_release(header->context, job.axes, 4);
-    if (status == SNOW_STATUS_OK && out)
-        *out = volume;
     return status;
 }
 

@@ -296,6 +296,8 @@ snow_status snow_uneven_read(snow_context *context, const snow_uneven *grid,
                              snow_volume_info *info, snow_volume **out) {
     resampling r = {.from = NULL};
     snow_region box;
+    if (!snow_uneven_any(grid))
+        return read(user, options, info, out);
     SNOW_TRY(snow_region_lay_out(context, options, info, &box));
     SNOW_TRY(find_all_places(context, grid, &box, r.axes));
     snow_status status =

@@ -40,7 +40,8 @@ typedef snow_status snow_uneven_fn(void *user,
                                    const snow_volume_options *options,
                                    snow_volume_info *info, snow_volume **out);
 
-/* Reads the box of the options of the even grid.  info->dims are those of the
+/* Reads the box of the options of the even grid; without uneven axes it is
+ * `read` alone.  info->dims are those of the
  * even grid, and become those of the box; info->type is that of the file's
  * voxels; type, slope and intercept become those of what `read` makes.  Errors:
  * SNOW_STATUS_BAD_USAGE (the box), SNOW_STATUS_NO_MEMORY, those of `read`. */

@@ -55,16 +55,6 @@ snow_status snow_vtk_describe(snow_context *context, vtk_grid *grid,
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_vtk_read(snow_context *context, const vtk_grid *grid,
-                          const snow_volume_options *options,
-                          snow_uneven_fn *read, void *user,
-                          snow_volume_info *info, snow_volume **out) {
-    return snow_uneven_any(&grid->uneven)
-               ? snow_uneven_read(context, &grid->uneven, options, read, user,
-                                  info, out)
-               : read(user, options, info, out);
-}
-
 /* Returns where a text lies in bytes; NULL: nowhere. */
 static const unsigned char *find_text(const unsigned char *bytes, size_t size,
                                       const char *text) {

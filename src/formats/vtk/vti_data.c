@@ -125,16 +125,10 @@ snow_status snow_vti_read_data(snow_source *source, const vti_header *header,
                                const snow_volume_options *options,
                                int64_t channel, snow_volume_info *info,
                                snow_volume **out) {
-    uint64_t steps[4];
-    size_t size = snow_type_size(info->type);
     vti_numbers n = {.source = source, .header = header, .channel = channel};
-    const int64_t *dims = header->grid.uneven.count;
-    const int64_t sizes[4] = {header->array.channels, dims[0], dims[1],
-                              dims[2]};
-    n.array = (snow_array){.big_endian = header->big_endian,
-                           .first = (uint64_t)channel * size,
-                           .more = true};
-    if (!snow_array_steps(sizes, 4, size, steps, &n.array.all))
+    n.array = (snow_array){.big_endian = header->big_endian, .more = true};
+    if (!snow_array_of_grid(info->type, header->grid.uneven.count,
+                            header->array.channels, channel, 0, &n.array))
         return snow_fail(
             snow_source_context(source), SNOW_STATUS_BAD_INPUT,
             "its extent is too large for any file; write it again");
@@ -142,7 +136,6 @@ snow_status snow_vti_read_data(snow_source *source, const vti_header *header,
         SNOW_TRY(find_appended(source, header));
     if (header->form != VTI_ASCII)
         SNOW_TRY(snow_vti_begin_numbers(source, header, n.array.all));
-    memcpy(n.array.step, steps + 1, sizeof n.array.step);
-    return snow_vtk_read(snow_source_context(source), &header->grid, options,
-                         read_numbers, &n, info, out);
+    return snow_uneven_read(snow_source_context(source), &header->grid.uneven,
+                            options, read_numbers, &n, info, out);
 }

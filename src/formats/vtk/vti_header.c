@@ -201,17 +201,6 @@ static int judge(const vti_text *text, const char *name) {
     return WANTED;
 }
 
-static void remember(vti_text *text, const char *name) {
-    size_t used = strlen(text->seen);
-    if (used + strlen(name) + 3 > sizeof text->seen)
-        return;
-    if (used) {
-        memcpy(text->seen + used, ", ", 3);
-        used += 2;
-    }
-    memcpy(text->seen + used, name, strlen(name) + 1);
-}
-
 bool snow_vti_keep_array(vti_header *header, const char **attributes,
                          const char *name, bool cells) {
     const char *form = snow_index_attribute(attributes, "format");
@@ -253,7 +242,7 @@ static snow_status begin_array(vti_text *text, const char **attributes) {
         name = "";
     int choice = judge(text, name);
     text->any_points = text->any_points || text->points;
-    remember(text, name);
+    snow_list_add(text->seen, sizeof text->seen, "%s", name);
     if (choice <= text->choice)
         return SNOW_STATUS_OK;
     if (!snow_vti_keep_array(text->header, attributes, name, text->cells))

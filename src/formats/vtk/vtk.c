@@ -178,40 +178,24 @@ static snow_status read_numbers(void *user, const snow_volume_options *options,
 /* If a better array may follow, reading continues after this one. */
 static snow_status read_array(vtk_reader *reader, const vtk_array *array,
                               int64_t channel) {
-    uint64_t steps[4];
     vtk_numbers n = {.reader = reader, .array = array, .channel = channel};
-    size_t size = snow_type_size(array->type);
     snow_volume **out = reader->inspect ? NULL : &reader->volume;
     const int64_t *dims = reader->grid.uneven.count;
-    const int64_t sizes[4] = {array->channels, dims[0], dims[1], dims[2]};
     int64_t tuples = dims[0] * dims[1] * dims[2];
     n.bytes = (snow_array){.big_endian = true, .more = true};
     snow_volume_close(reader->volume);
     reader->volume = NULL;
-    if (!snow_array_steps(sizes, 4, size, steps, &n.bytes.all))
+    if (!snow_array_of_grid(array->type, dims, array->channels, channel, 0,
+                            &n.bytes))
         return fail_line(reader);
-    memcpy(n.bytes.step, steps + 1, sizeof n.bytes.step);
-    n.bytes.first = (uint64_t)channel * size;
     snow_status status =
-        snow_vtk_read(reader->context, &reader->grid, reader->options,
-                      read_numbers, &n, reader->info, out);
+        snow_uneven_read(reader->context, &reader->grid.uneven, reader->options,
+                         read_numbers, &n, reader->info, out);
     if (status == SNOW_STATUS_OK && reader->shares)
         make_bytes(reader);
     if (status == SNOW_STATUS_OK && reader->inspect && !reader->done)
         status = skip_array(reader, array->type, array->channels, tuples);
     return status;
-}
-
-/* Keeps the name for the message that lists them. */
-static void remember(vtk_reader *reader, const char *name) {
-    size_t used = strlen(reader->seen);
-    if (used + strlen(name) + 3 > sizeof reader->seen)
-        return;
-    if (used) {
-        memcpy(reader->seen + used, ", ", 3);
-        used += 2;
-    }
-    memcpy(reader->seen + used, name, strlen(name) + 1);
 }
 
 /* Reads an array's numbers if it is the requested one, otherwise skips them. */
@@ -230,7 +214,7 @@ static snow_status take_array(vtk_reader *reader, const char *name,
     bool wanted = reader->placed && (asked ? !strcmp(asked, array.name)
                                            : !reader->cells || !reader->found);
     if (reader->placed)
-        remember(reader, array.name);
+        snow_list_add(reader->seen, sizeof reader->seen, "%s", array.name);
     if (!wanted)
         return skip_array(reader, type, channels, tuples);
     snow_volume_info *info = reader->info;

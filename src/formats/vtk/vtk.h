@@ -62,13 +62,6 @@ typedef struct vtk_line {
 snow_status snow_vtk_read_line(snow_source *source, const vtk_line *line,
                                double **out);
 
-/* Takes the array's values, which `read` reads as they are, box by box, onto
- * the even grid; without uneven axes it is `read` alone. */
-snow_status snow_vtk_read(snow_context *context, const vtk_grid *grid,
-                          const snow_volume_options *options,
-                          snow_uneven_fn *read, void *user,
-                          snow_volume_info *info, snow_volume **out);
-
 /* Returns whether bytes begin an XML file of VTK, of a type unless that is
  * NULL. */
 bool snow_vtk_probe_xml(const unsigned char *bytes, size_t size,

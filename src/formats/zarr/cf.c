@@ -125,13 +125,10 @@ static snow_status take_node(const zarr_store *store, const char *path,
     if (!fits(&array, count))
         return SNOW_STATUS_OK;
     read_attributes(node->attributes, &says);
-    *hint = snow_cf_hint(
-        &(cf_words){name, says.units, says.axis, says.standard_name});
+    *hint = snow_cf_hint(name, &says);
     SNOW_TRY(read_values(store, &array, &values));
-    const cf_values stored =
-        snow_cf_settle(store->context, &says, array.type, false);
-    snow_cf_decode(&stored, count, values);
-    snow_cf_measure(values, count, &says, out);
+    snow_cf_take_axis(store->context, &says, array.type, false, count, values,
+                      out);
     return SNOW_STATUS_OK;
 }
 
@@ -145,7 +142,8 @@ static snow_status read_axis(const zarr_store *store, const zarr_array *array,
         zarr_node node;
         end = strrchr(group, '/');
         *(end ? end : group) = 0;
-        if (!snow_zarr_join(group, name, path) || !strcmp(path, array->path))
+        SNOW_TRY(snow_zarr_join(store, group, name, path));
+        if (!strcmp(path, array->path))
             continue;
         SNOW_TRY(snow_zarr_look(store, path, &node));
         const bool found = node.kind == ZARR_ARRAY;
@@ -188,7 +186,7 @@ snow_status snow_zarr_read_cf(const zarr_store *store, const zarr_found *found,
         if (!*name)
             continue;
         out->named = true;
-        *hint = snow_cf_hint(&(cf_words){name, "", "", ""});
+        *hint = snow_cf_hint(name, NULL);
         if (!strchr(name, '/') && *name != '.')
             SNOW_TRY(read_axis(store, array, i, hint, &out->axes[i]));
         applies |= out->axes[i].coordinates != NULL;

@@ -89,12 +89,7 @@ static snow_status name_file(const zarr_box *box, const int64_t *at,
         used +=
             (size_t)snprintf(numbers + used, sizeof numbers - used, "%.*s%lld",
                              i ? 1 : 0, &separator, (long long)at[i]);
-    if (snow_zarr_join(array->path, numbers, out))
-        return SNOW_STATUS_OK;
-    return snow_zarr_fail(box->store, "",
-                          "a path is longer than %d letters; move the folder "
-                          "up",
-                          ZARR_PATH_BYTES);
+    return snow_zarr_join(box->store, array->path, numbers, out);
 }
 
 /* Opens the file of a chunk or shard.  Some programs nest the files and do not
@@ -199,48 +194,19 @@ static void find_patch(const filler *f, const int64_t *chunk, patch *out) {
     }
 }
 
-/* Copies one row along x. */
-static void put_row(const zarr_array *array, const unsigned char *from,
-                    uint64_t step, unsigned char *to, int64_t count) {
-    size_t width = array->width;
-    if (array->values == SNOW_CODING_PLAIN && step == width) {
-        memcpy(to, from, (size_t)count * width);
-        return;
-    }
-    if (array->values == SNOW_CODING_BOOL) {
-        for (int64_t i = 0; i < count; i++)
-            to[i] = from[(uint64_t)i * step] != 0;
-        return;
-    }
-    for (int64_t i = 0; i < count; i++, from += step) {
-        if (array->values == SNOW_CODING_HALF) {
-            uint16_t half;
-            memcpy(&half, from, sizeof half);
-            float value = snow_half_to_float(half);
-            memcpy(to + 4 * i, &value, sizeof value);
-        } else if (width == 1) {
-            to[i] = *from;
-        } else if (width == 2) {
-            memcpy(to + 2 * i, from, 2);
-        } else if (width == 4) {
-            memcpy(to + 4 * i, from, 4);
-        } else {
-            memcpy(to + 8 * i, from, 8);
-        }
-    }
-}
-
 static void put_chunk(const filler *f, const int64_t *chunk) {
+    const zarr_array *array = f->box->array;
     patch p;
     find_patch(f, chunk, &p);
     for (int64_t z = 0; z < p.count[2]; z++)
         for (int64_t y = 0; y < p.count[1]; y++)
-            put_row(f->box->array,
-                    f->values + p.from + (uint64_t)z * p.step[2] +
-                        (uint64_t)y * p.step[1],
-                    p.step[0],
-                    p.to + (uint64_t)z * p.place[2] + (uint64_t)y * p.place[1],
-                    p.count[0]);
+            snow_coding_put(
+                array->values, snow_machine_big_endian(), array->width,
+                f->values + p.from + (uint64_t)z * p.step[2] +
+                    (uint64_t)y * p.step[1],
+                p.step[0],
+                p.to + (uint64_t)z * p.place[2] + (uint64_t)y * p.place[1],
+                snow_type_size(array->type), (uint64_t)p.count[0]);
 }
 
 static void fill_chunk(const filler *f, const int64_t *chunk) {

@@ -19,30 +19,30 @@ static const struct {
     {"lz4", ZARR_LZ4},      {"blosc", ZARR_BLOSC},
 };
 
-static snow_status add_packer(const zarr_store *store, const char *path,
-                              const char *name, const json_t *given,
-                              zarr_packer packer, zarr_coding *coding) {
+static snow_status add_packer(const char *name, const json_t *given,
+                              zarr_packer packer, zarr_array *array) {
+    zarr_coding *coding = &array->coding;
     const char *inner = json_string_value(json_object_get(given, "cname"));
     if (coding->packer)
-        return snow_zarr_fail(store, path,
-                              "is compressed twice, by %s and %.40s; copy the "
-                              "array with one of them",
-                              coding->text, name);
+        return ZARR_FAIL(array,
+                         "is compressed twice, by %s and %.40s; copy the "
+                         "array with one of them",
+                         coding->text, name);
     coding->packer = packer;
     snprintf(coding->text, sizeof coding->text, "%.16s%s%.16s", name,
              inner ? " " : "", inner ? inner : "");
     return SNOW_STATUS_OK;
 }
 
-static snow_status add_filter(const zarr_store *store, const char *path,
-                              const char *name, zarr_filter filter,
-                              zarr_coding *coding) {
+static snow_status add_filter(const char *name, zarr_filter filter,
+                              zarr_array *array) {
+    zarr_coding *coding = &array->coding;
     if (coding->packer || coding->inner_sums ||
         coding->filter_count == ZARR_MOST_FILTERS)
-        return snow_zarr_fail(store, path,
-                              "has the filter %.40s in an unsupported place; "
-                              "copy the array without filters",
-                              name);
+        return ZARR_FAIL(array,
+                         "has the filter %.40s in an unsupported place; "
+                         "copy the array without filters",
+                         name);
     coding->filters[coding->filter_count++] = filter;
     return SNOW_STATUS_OK;
 }
@@ -64,15 +64,14 @@ static bool is_own_delta(const json_t *given, const zarr_array *array) {
            array->values == SNOW_CODING_PLAIN;
 }
 
-snow_status snow_zarr_add_coder(const zarr_store *store, const char *path,
-                                const char *name, const json_t *given,
-                                zarr_array *array, zarr_coding *coding) {
+snow_status snow_zarr_add_coder(const char *name, const json_t *given,
+                                zarr_array *array) {
+    zarr_coding *coding = &array->coding;
     if (!strncmp(name, "numcodecs.", 10))
         name += 10;
     for (size_t i = 0; i < sizeof packers / sizeof *packers; i++)
         if (!strcmp(name, packers[i].name))
-            return add_packer(store, path, name, given, packers[i].packer,
-                              coding);
+            return add_packer(name, given, packers[i].packer, array);
     if (!strcmp(name, "crc32c")) {
         int *sums = coding->packer ? &coding->outer_sums : &coding->inner_sums;
         if (++*sums <= 2)
@@ -81,15 +80,13 @@ snow_status snow_zarr_add_coder(const zarr_store *store, const char *path,
     if (!strcmp(name, "shuffle")) {
         double width = json_number_value(json_object_get(given, "elementsize"));
         if (width >= 1 && width <= 64)
-            return add_filter(store, path, name,
-                              (zarr_filter){ZARR_SHUFFLE, (size_t)width},
-                              coding);
+            return add_filter(name, (zarr_filter){ZARR_SHUFFLE, (size_t)width},
+                              array);
     }
     if (!strcmp(name, "delta") && is_own_delta(given, array))
-        return add_filter(store, path, name,
-                          (zarr_filter){ZARR_DELTA, array->width}, coding);
-    return snow_zarr_fail(
-        store, path,
+        return add_filter(name, (zarr_filter){ZARR_DELTA, array->width}, array);
+    return ZARR_FAIL(
+        array,
         "uses the codec %.40s, which is not supported; copy the array without "
         "filters, compressed by zstd, gzip or blosc (zarr.copy, or ome_zarr)",
         name);
@@ -172,8 +169,7 @@ static bool store_whole(const json_t *given, double value, snow_type type,
     return true;
 }
 
-snow_status snow_zarr_take_fill(const zarr_store *store, const json_t *given,
-                                zarr_array *array) {
+snow_status snow_zarr_take_fill(const json_t *given, zarr_array *array) {
     double value = 0;
     bool right =
         snow_zarr_number(given, &value) || fill_bits(given, array, &value);
@@ -185,10 +181,9 @@ snow_status snow_zarr_take_fill(const zarr_store *store, const json_t *given,
     else if (right)
         right = store_whole(given, value, array->type, array->fill);
     if (!right)
-        return snow_zarr_fail(
-            store, array->path,
-            "has a fill_value that is not a valid %s; correct it",
-            snow_type_name(array->type));
+        return ZARR_FAIL(array,
+                         "has a fill_value that is not a valid %s; correct it",
+                         snow_type_name(array->type));
     array->has_fill = given && !json_is_null(given);
     array->fill_number =
         json_is_integer(given)

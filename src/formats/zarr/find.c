@@ -54,36 +54,22 @@ static size_t level_count(const json_t *image) {
 static snow_status look_below(const zarr_store *store, const char *path,
                               const char *name, zarr_node *out) {
     char whole[ZARR_PATH_BYTES];
-    if (!snow_zarr_join(path, name, whole))
-        return snow_zarr_fail(store, "",
-                              "a path is longer than %d letters; move the "
-                              "folder up",
-                              ZARR_PATH_BYTES);
+    SNOW_TRY(snow_zarr_join(store, path, name, whole));
     return snow_zarr_look(store, whole, out);
-}
-
-static void append(char list[LIST_BYTES], const char *text) {
-    size_t used = strlen(list), more = strlen(text);
-    if (used + more + 8 < LIST_BYTES)
-        snprintf(list + used, LIST_BYTES - used, "%s%s", used ? ", " : "",
-                 text);
-    else if (used > 3 && strcmp(list + used - 3, "...") != 0)
-        memcpy(list + used, " ...", 5);
 }
 
 /* "name (5, 6, 7)", sizes in the order of the file. */
 static void append_array(char list[LIST_BYTES], const char *name,
                          const json_t *meta) {
-    char text[LIST_BYTES];
+    char text[24 * ZARR_MOST_AXES] = "";
     const json_t *shape = json_object_get(meta, "shape");
     size_t axes = json_array_size(shape);
-    int used = snow_text_print(text, sizeof text, "%.300s (", name);
+    int used = 0;
     for (size_t i = 0; i < axes && i < ZARR_MOST_AXES; i++)
         used += snow_text_print(text + used, sizeof text - (size_t)used,
                                 "%s%.0f", i ? ", " : "",
                                 json_number_value(json_array_get(shape, i)));
-    snprintf(text + used, sizeof text - (size_t)used, ")");
-    append(list, text);
+    snow_list_add(list, LIST_BYTES, "%.300s (%s)", name, text);
 }
 
 /* Lists the existing resolution levels of an image, and returns the first; -1
@@ -135,7 +121,8 @@ static snow_status take_level(const zarr_store *store, const char *group,
     found->levels = (int)level_count(image);
     found->level =
         json_array_get(json_object_get(image, "datasets"), (size_t)index);
-    snow_zarr_join(group, snow_zarr_level_path(image, (size_t)index), path);
+    SNOW_TRY(snow_zarr_join(store, group,
+                            snow_zarr_level_path(image, (size_t)index), path));
     return take_array(store, path, found);
 }
 
@@ -281,7 +268,7 @@ static snow_status survey_node(survey *s, const zarr_node *node) {
     if (!s->found++)
         memcpy(s->path, s->at, sizeof s->path);
     if (image)
-        append(s->list, name);
+        snow_list_add(s->list, LIST_BYTES, "%s", name);
     else
         append_array(s->list, name, node->meta);
     return SNOW_STATUS_OK;

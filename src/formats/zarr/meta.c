@@ -25,39 +25,36 @@ static bool take_sizes(const json_t *list, int axes, int64_t *out) {
     return true;
 }
 
-static snow_status take_shape(const zarr_store *store, const char *path,
-                              const json_t *list, zarr_array *array) {
+static snow_status take_shape(const json_t *list, zarr_array *array) {
     size_t axes = json_array_size(list);
     if (axes < 1 || axes > ZARR_MOST_AXES)
-        return snow_zarr_fail(store, path,
-                              "has %zu axes, but only 1 to %d are supported; "
-                              "choose another array with --dataset",
-                              axes, ZARR_MOST_AXES);
+        return ZARR_FAIL(array,
+                         "has %zu axes, but only 1 to %d are supported; "
+                         "choose another array with --dataset",
+                         axes, ZARR_MOST_AXES);
     array->axes = (int)axes;
     if (!take_sizes(list, array->axes, array->sizes))
-        return snow_zarr_fail(store, path,
-                              "has an axis without a whole size of at least 1: "
-                              "it is empty or damaged; choose another array "
-                              "with --dataset");
+        return ZARR_FAIL(array,
+                         "has an axis without a whole size of at least 1: "
+                         "it is empty or damaged; choose another array "
+                         "with --dataset");
     return SNOW_STATUS_OK;
 }
 
 /* After this no product overflows. */
-static snow_status check_bytes(const zarr_store *store, const char *path,
-                               const zarr_array *array) {
+static snow_status check_bytes(const zarr_array *array) {
     uint64_t steps[ZARR_MOST_AXES], all;
     for (int i = 0; i < array->axes; i++)
         if (array->file[i] % array->chunk[i])
-            return snow_zarr_fail(store, path,
-                                  "has chunks of %lld in shards of %lld, which "
-                                  "are not a multiple; correct zarr.json",
-                                  (long long)array->chunk[i],
-                                  (long long)array->file[i]);
+            return ZARR_FAIL(array,
+                             "has chunks of %lld in shards of %lld, which "
+                             "are not a multiple; correct zarr.json",
+                             (long long)array->chunk[i],
+                             (long long)array->file[i]);
     if (snow_array_steps(array->sizes, array->axes, 8, steps, &all) &&
         snow_array_steps(array->file, array->axes, 8, steps, &all))
         return SNOW_STATUS_OK;
-    return snow_zarr_fail(store, path,
-                          "has sizes too large for any array; it is damaged");
+    return ZARR_FAIL(array, "has sizes too large for any array; it is damaged");
 }
 
 static snow_type type_of(char kind, size_t width) {
@@ -71,8 +68,7 @@ static snow_type type_of(char kind, size_t width) {
                                       : SNOW_TYPE_NONE;
 }
 
-static snow_status take_type(const zarr_store *store, const char *path,
-                             char kind, size_t width, const char *given,
+static snow_status take_type(char kind, size_t width, const char *given,
                              zarr_array *array) {
     array->type = type_of(kind, width);
     array->width = width;
@@ -81,8 +77,8 @@ static snow_status take_type(const zarr_store *store, const char *path,
                                                 : SNOW_CODING_PLAIN;
     if (array->type)
         return SNOW_STATUS_OK;
-    return snow_zarr_fail(
-        store, path,
+    return ZARR_FAIL(
+        array,
         "has the unsupported type \"%.40s\"; convert the values to one of "
         "bool, int8 to uint64, float16 to float64",
         given ? given : "(several in one)");
@@ -91,75 +87,68 @@ static snow_status take_type(const zarr_store *store, const char *path,
 /* --- version 2 ------------------------------------------------------------ */
 
 /* Filters come before the compressor, in the order of writing. */
-static snow_status take_coders_2(const zarr_store *store, const char *path,
-                                 const json_t *meta, zarr_array *array) {
+static snow_status take_coders_2(const json_t *meta, zarr_array *array) {
     const json_t *filters = json_object_get(meta, "filters");
     const json_t *packer = json_object_get(meta, "compressor");
     if (filters && !json_is_array(filters) && !json_is_null(filters))
-        return snow_zarr_fail(store, path,
-                              "has filters that are neither a list nor null; "
-                              "correct .zarray");
+        return ZARR_FAIL(array, "has filters that are neither a list nor null; "
+                                "correct .zarray");
     for (size_t i = 0; i <= json_array_size(filters); i++) {
         bool last = i == json_array_size(filters);
         const json_t *coder = last ? packer : json_array_get(filters, i);
         const char *name = json_string_value(json_object_get(coder, "id"));
         if (last && (!coder || json_is_null(coder)))
             break;
-        SNOW_TRY(snow_zarr_add_coder(store, path, name ? name : "(none)", coder,
-                                     array, &array->coding));
+        SNOW_TRY(snow_zarr_add_coder(name ? name : "(none)", coder, array));
     }
     return SNOW_STATUS_OK;
 }
 
-static snow_status take_order(const zarr_store *store, const char *path,
-                              const json_t *meta, zarr_array *array) {
+static snow_status take_order(const json_t *meta, zarr_array *array) {
     const char *order = json_string_value(json_object_get(meta, "order"));
     bool fortran = order && !strcmp(order, "F");
     if (!fortran && !(order && !strcmp(order, "C")))
-        return snow_zarr_fail(
-            store, path,
+        return ZARR_FAIL(
+            array,
             "has no valid order; it must be \"C\" or \"F\": correct .zarray");
     for (int i = 0; i < array->axes; i++)
         array->order[i] = fortran ? array->axes - 1 - i : i;
     return SNOW_STATUS_OK;
 }
 
-static snow_status take_separator(const zarr_store *store, const char *path,
-                                  const json_t *given, char usual,
+static snow_status take_separator(const json_t *given, char usual,
                                   zarr_array *array) {
     const char *text = json_string_value(given);
     array->separator = text ? *text : usual;
     if (!given || (text && (!strcmp(text, ".") || !strcmp(text, "/"))))
         return SNOW_STATUS_OK;
-    return snow_zarr_fail(store, path,
-                          "has a chunk separator that is neither \".\" nor "
-                          "\"/\"; correct it");
+    return ZARR_FAIL(array, "has a chunk separator that is neither \".\" nor "
+                            "\"/\"; correct it");
 }
 
-static snow_status describe_2(const zarr_store *store, const char *path,
-                              const json_t *meta, zarr_array *array) {
+static snow_status describe_2(const json_t *meta, zarr_array *array) {
     const json_t *version = json_object_get(meta, "zarr_format");
     if (version && json_number_value(version) != 2)
-        return snow_zarr_fail(
-            store, path,
+        return ZARR_FAIL(
+            array,
             ".zarray has version %g, but only 2 is supported; convert it",
             json_number_value(version));
-    SNOW_TRY(take_shape(store, path, json_object_get(meta, "shape"), array));
+    SNOW_TRY(take_shape(json_object_get(meta, "shape"), array));
     if (!take_sizes(json_object_get(meta, "chunks"), array->axes, array->chunk))
-        return snow_zarr_fail(
-            store, path, "lacks a chunk size for some axes; correct .zarray");
+        return ZARR_FAIL(array,
+                         "lacks a chunk size for some axes; correct .zarray");
     memcpy(array->file, array->chunk, sizeof array->file);
     /* "<f8": the byte order, the kind, the number of bytes. */
     const char *given = json_string_value(json_object_get(meta, "dtype"));
     bool right = given && strlen(given) == 3 && strchr("<>|", *given) &&
                  given[2] >= '1' && given[2] <= '8';
     array->big_endian = right && *given == '>';
-    SNOW_TRY(take_type(store, path, right ? given[1] : '?',
+    SNOW_TRY(take_type(right ? given[1] : '?',
                        right ? (size_t)(given[2] - '0') : 0, given, array));
-    SNOW_TRY(take_order(store, path, meta, array));
-    SNOW_TRY(take_separator(
-        store, path, json_object_get(meta, "dimension_separator"), '.', array));
-    return take_coders_2(store, path, meta, array);
+    SNOW_TRY(take_order(meta, array));
+    SNOW_TRY(take_separator(json_object_get(meta, "dimension_separator"), '.',
+                            array));
+    return take_coders_2(meta, array);
 }
 
 /* --- version 3 ------------------------------------------------------------ */
@@ -173,44 +162,39 @@ static const char *name_of(const json_t *extension) {
 }
 
 /* "uint16": the letters give the kind, the number after them the bits. */
-static snow_status take_data_type(const zarr_store *store, const char *path,
-                                  const json_t *meta, zarr_array *array) {
+static snow_status take_data_type(const json_t *meta, zarr_array *array) {
     static const char *const kinds[] = {"int", "uint", "float"};
     const char *given = name_of(json_object_get(meta, "data_type"));
     if (!strcmp(given, "bool"))
-        return take_type(store, path, 'b', 1, given, array);
+        return take_type('b', 1, given, array);
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         size_t letters = strlen(kinds[i]);
         int64_t bits;
         if (!strncmp(given, kinds[i], letters) &&
             snow_parse_int64(given + letters, &bits) && bits >= 8 &&
             bits <= 64 && bits % 8 == 0)
-            return take_type(store, path, *kinds[i], (size_t)bits / 8, given,
-                             array);
+            return take_type(*kinds[i], (size_t)bits / 8, given, array);
     }
-    return take_type(store, path, '?', 0, given, array);
+    return take_type('?', 0, given, array);
 }
 
 /* The names of files: "c/0/1/2", or as in version 2. */
-static snow_status take_keys(const zarr_store *store, const char *path,
-                             const json_t *meta, zarr_array *array) {
+static snow_status take_keys(const json_t *meta, zarr_array *array) {
     const json_t *keys = json_object_get(meta, "chunk_key_encoding");
     const char *name = name_of(keys);
     array->prefixed = !strcmp(name, "default");
     if (!array->prefixed && strcmp(name, "v2") != 0)
-        return snow_zarr_fail(store, path,
-                              "uses the unknown chunk key encoding \"%.40s\"; "
-                              "copy the array with \"default\"",
-                              name);
+        return ZARR_FAIL(array,
+                         "uses the unknown chunk key encoding \"%.40s\"; "
+                         "copy the array with \"default\"",
+                         name);
     const json_t *given =
         json_object_get(json_object_get(keys, "configuration"), "separator");
-    return take_separator(store, path, given, array->prefixed ? '/' : '.',
-                          array);
+    return take_separator(given, array->prefixed ? '/' : '.', array);
 }
 
 /* A permutation: axis order[i] of the array is axis i of a chunk. */
-static snow_status take_transposition(const zarr_store *store, const char *path,
-                                      const json_t *given, zarr_array *array) {
+static snow_status take_transposition(const json_t *given, zarr_array *array) {
     const json_t *list = json_object_get(given, "order");
     unsigned seen = 0;
     int order[ZARR_MOST_AXES];
@@ -223,30 +207,27 @@ static snow_status take_transposition(const zarr_store *store, const char *path,
         order[i] = (int)number;
     }
     if (seen + 1 != 1U << array->axes)
-        return snow_zarr_fail(store, path,
-                              "has a transpose codec that is not a permutation "
-                              "of its axes; correct zarr.json");
+        return ZARR_FAIL(array,
+                         "has a transpose codec that is not a permutation "
+                         "of its axes; correct zarr.json");
     for (int i = 0; i < array->axes; i++)
         order[i] = array->order[order[i]];
     memcpy(array->order, order, sizeof order);
     return SNOW_STATUS_OK;
 }
 
-static snow_status take_endian(const zarr_store *store, const char *path,
-                               const json_t *given, zarr_array *array) {
+static snow_status take_endian(const json_t *given, zarr_array *array) {
     const char *text = json_string_value(json_object_get(given, "endian"));
     array->big_endian = text && !strcmp(text, "big");
     if (array->width == 1 || array->big_endian ||
         (text && !strcmp(text, "little")))
         return SNOW_STATUS_OK;
-    return snow_zarr_fail(store, path,
-                          "has no valid byte order; it must be \"little\" or "
-                          "\"big\": correct zarr.json");
+    return ZARR_FAIL(array, "has no valid byte order; it must be \"little\" or "
+                            "\"big\": correct zarr.json");
 }
 
 /* The index of a shard: plain, with or without a checksum. */
-static snow_status take_index(const zarr_store *store, const char *path,
-                              const json_t *given, zarr_array *array) {
+static snow_status take_index(const json_t *given, zarr_array *array) {
     const json_t *codecs = json_object_get(given, "index_codecs");
     const char *place =
         json_string_value(json_object_get(given, "index_location"));
@@ -261,14 +242,12 @@ static snow_status take_index(const zarr_store *store, const char *path,
     if ((count == 1 || array->index_summed) &&
         !strcmp(name_of(bytes), "bytes") && !(endian && !strcmp(endian, "big")))
         return SNOW_STATUS_OK;
-    return snow_zarr_fail(store, path,
-                          "has an index of its shards with other codecs than "
-                          "bytes and crc32c; copy the array with these");
+    return ZARR_FAIL(array, "has an index of its shards with other codecs than "
+                            "bytes and crc32c; copy the array with these");
 }
 
 /* Reads the codecs of a list; `inner` is true within a shard. */
-static snow_status take_codecs(const zarr_store *store, const char *path,
-                               const json_t *list, bool inner,
+static snow_status take_codecs(const json_t *list, bool inner,
                                zarr_array *array) {
     bool has_bytes = false;
     for (size_t i = 0; i < json_array_size(list); i++) {
@@ -276,56 +255,50 @@ static snow_status take_codecs(const zarr_store *store, const char *path,
         const json_t *given = json_object_get(codec, "configuration");
         const char *name = name_of(codec);
         if (!strcmp(name, "transpose") && !has_bytes) {
-            SNOW_TRY(take_transposition(store, path, given, array));
+            SNOW_TRY(take_transposition(given, array));
         } else if (!strcmp(name, "bytes") && !has_bytes) {
-            SNOW_TRY(take_endian(store, path, given, array));
+            SNOW_TRY(take_endian(given, array));
             has_bytes = true;
         } else if (!strcmp(name, "sharding_indexed") && !inner &&
                    json_array_size(list) == 1) {
             if (!take_sizes(json_object_get(given, "chunk_shape"), array->axes,
                             array->chunk))
-                return snow_zarr_fail(store, path,
-                                      "lacks a chunk size in its shards for "
-                                      "some axes; correct zarr.json");
-            SNOW_TRY(take_index(store, path, given, array));
-            return take_codecs(store, path, json_object_get(given, "codecs"),
-                               true, array);
+                return ZARR_FAIL(array, "lacks a chunk size in its shards for "
+                                        "some axes; correct zarr.json");
+            SNOW_TRY(take_index(given, array));
+            return take_codecs(json_object_get(given, "codecs"), true, array);
         } else {
-            SNOW_TRY(snow_zarr_add_coder(store, path, name, given, array,
-                                         &array->coding));
+            SNOW_TRY(snow_zarr_add_coder(name, given, array));
         }
     }
     return has_bytes ? SNOW_STATUS_OK
-                     : snow_zarr_fail(store, path,
-                                      "has no codec \"bytes\"; correct "
-                                      "zarr.json");
+                     : ZARR_FAIL(array, "has no codec \"bytes\"; correct "
+                                        "zarr.json");
 }
 
-static snow_status describe_3(const zarr_store *store, const char *path,
-                              const json_t *meta, zarr_array *array) {
+static snow_status describe_3(const json_t *meta, zarr_array *array) {
     const json_t *grid = json_object_get(meta, "chunk_grid");
     const json_t *changed = json_object_get(meta, "storage_transformers");
     if (changed && !(json_is_array(changed) && !json_array_size(changed)))
-        return snow_zarr_fail(store, path,
-                              "is stored through the transformer \"%.40s\", "
-                              "which is not supported; copy the array without "
-                              "storage_transformers",
-                              name_of(json_array_get(changed, 0)));
-    SNOW_TRY(take_shape(store, path, json_object_get(meta, "shape"), array));
+        return ZARR_FAIL(array,
+                         "is stored through the transformer \"%.40s\", "
+                         "which is not supported; copy the array without "
+                         "storage_transformers",
+                         name_of(json_array_get(changed, 0)));
+    SNOW_TRY(take_shape(json_object_get(meta, "shape"), array));
     const json_t *chunks =
         json_object_get(json_object_get(grid, "configuration"), "chunk_shape");
     if (strcmp(name_of(grid), "regular") != 0 ||
         !take_sizes(chunks, array->axes, array->file))
-        return snow_zarr_fail(
-            store, path,
+        return ZARR_FAIL(
+            array,
             "does not have a regular chunk grid; copy the array with one");
     memcpy(array->chunk, array->file, sizeof array->chunk);
     for (int i = 0; i < array->axes; i++)
         array->order[i] = i;
-    SNOW_TRY(take_data_type(store, path, meta, array));
-    SNOW_TRY(take_keys(store, path, meta, array));
-    return take_codecs(store, path, json_object_get(meta, "codecs"), false,
-                       array);
+    SNOW_TRY(take_data_type(meta, array));
+    SNOW_TRY(take_keys(meta, array));
+    return take_codecs(json_object_get(meta, "codecs"), false, array);
 }
 
 /* --- both ----------------------------------------------------------------- */
@@ -347,13 +320,13 @@ static void take_names(const zarr_node *node, zarr_array *array) {
 
 snow_status snow_zarr_describe(const zarr_store *store, const char *path,
                                const zarr_node *node, zarr_array *out) {
-    zarr_array array = {.version = node->version};
+    zarr_array array = {.store = store, .version = node->version};
     memcpy(array.path, path, strlen(path) + 1);
-    SNOW_TRY(node->version == 3 ? describe_3(store, path, node->meta, &array)
-                                : describe_2(store, path, node->meta, &array));
-    SNOW_TRY(check_bytes(store, path, &array));
-    SNOW_TRY(snow_zarr_take_fill(
-        store, json_object_get(node->meta, "fill_value"), &array));
+    SNOW_TRY(node->version == 3 ? describe_3(node->meta, &array)
+                                : describe_2(node->meta, &array));
+    SNOW_TRY(check_bytes(&array));
+    SNOW_TRY(
+        snow_zarr_take_fill(json_object_get(node->meta, "fill_value"), &array));
     take_names(node, &array);
     *out = array;
     return SNOW_STATUS_OK;

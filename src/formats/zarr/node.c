@@ -87,11 +87,7 @@ static snow_status load_json(const zarr_store *store, const char *path,
                              const char *name, json_t **out) {
     char whole[ZARR_PATH_BYTES];
     zarr_file file;
-    if (!snow_zarr_join(path, name, whole))
-        return snow_zarr_fail(store, "",
-                              "a path is longer than %d letters; "
-                              "move the folder up",
-                              ZARR_PATH_BYTES);
+    SNOW_TRY(snow_zarr_join(store, path, name, whole));
     SNOW_TRY(snow_zarr_open(store, whole, &file));
     snow_status status =
         file.is_there ? parse_file(store, &file, out) : SNOW_STATUS_OK;

@@ -22,10 +22,16 @@
 /* The most names in one folder: a plate has hundreds of wells. */
 #define MOST_NAMES 10000
 
-bool snow_zarr_join(const char *path, const char *name, char *out) {
+snow_status snow_zarr_join(const zarr_store *store, const char *path,
+                           const char *name, char *out) {
     const char *slash = *path && *name ? "/" : "";
     int size = snprintf(out, ZARR_PATH_BYTES, "%s%s%s", path, slash, name);
-    return size >= 0 && size < ZARR_PATH_BYTES;
+    return size >= 0 && size < ZARR_PATH_BYTES
+               ? SNOW_STATUS_OK
+               : snow_zarr_fail(store, "",
+                                "a path is longer than %d letters; move the "
+                                "folder up",
+                                ZARR_PATH_BYTES);
 }
 
 /* --- records in memory ---------------------------------------------------- */

@@ -213,13 +213,6 @@ static snow_status read_stored(void *user, const snow_volume_options *options,
     return snow_volume_give(status, volume, out);
 }
 
-/* The same as data, with missing ones. */
-static snow_status read_voxels(void *user, const snow_volume_options *options,
-                               snow_volume_info *info, snow_volume **out) {
-    zarr_job *job = user;
-    return snow_cf_read(&job->cf.values, read_stored, job, options, info, out);
-}
-
 /* What arrays of data sets have: coordinates, time, names. */
 static void describe_array(zarr_job *job, const snow_volume_options *options,
                            snow_volume_info *info) {
@@ -233,9 +226,7 @@ static void describe_array(zarr_job *job, const snow_volume_options *options,
         snow_cf_name(slash ? slash + 1 : path, &job->cf.says, info);
     if (axis[ZARR_TIME] >= 0)
         snow_cf_time(&job->cf.axes[axis[ZARR_TIME]], info);
-    if (space[0].given || space[1].given || space[2].given)
-        snow_cf_place(job->box.store->context, space, options, info,
-                      &job->grid);
+    snow_cf_place(job->box.store->context, space, options, info, &job->grid);
 }
 
 static snow_status read_job(zarr_job *job, zarr_found *found,
@@ -254,10 +245,8 @@ static snow_status read_job(zarr_job *job, zarr_found *found,
     spell(found, info->storage, sizeof info->storage);
     SNOW_TRY(snow_zarr_place(store, found, &box->roles, info));
     describe_array(job, options, info);
-    return snow_uneven_any(&job->grid)
-               ? snow_uneven_read(store->context, &job->grid, options,
-                                  read_voxels, job, info, out)
-               : read_voxels(job, options, info, out);
+    return snow_cf_read(store->context, &job->grid, &job->cf.values,
+                        read_stored, job, options, info, out);
 }
 
 static snow_status read_found(const zarr_store *store, zarr_found *found,

@@ -75,8 +75,9 @@ snow_status snow_zarr_visit(const zarr_store *store, const char *path,
                             zarr_visit_fn *visit, void *user);
 
 /* Writes "path/name" to `out` of ZARR_PATH_BYTES, or only the part that is not
- * empty; returns false if it does not fit. */
-bool snow_zarr_join(const char *path, const char *name, char *out);
+ * empty.  Errors: SNOW_STATUS_BAD_INPUT if it does not fit. */
+snow_status snow_zarr_join(const zarr_store *store, const char *path,
+                           const char *name, char *out);
 
 /* --- node.c, meta.c, codec.c ---------------------------------------------- */
 
@@ -105,6 +106,7 @@ typedef struct zarr_coding {
 } zarr_coding;
 
 typedef struct zarr_array {
+    const zarr_store *store;
     char path[ZARR_PATH_BYTES]; /* within the store; "": the store itself */
     int version;                /* 2 or 3 */
     int axes;
@@ -153,19 +155,21 @@ snow_status snow_zarr_describe(const zarr_store *store, const char *path,
 snow_status snow_zarr_fail(const zarr_store *store, const char *path,
                            const char *format, ...) SNOW_PRINTF(3, 4);
 
+/* The same because of an array's metadata. */
+#define ZARR_FAIL(array, ...) \
+    snow_zarr_fail((array)->store, (array)->path, __VA_ARGS__)
+
 /* Adds one codec in the order of writing: its name and its configuration.
- * `type` is that of the array.  Errors: SNOW_STATUS_BAD_INPUT. */
-snow_status snow_zarr_add_coder(const zarr_store *store, const char *path,
-                                const char *name, const json_t *given,
-                                zarr_array *array, zarr_coding *coding);
+ * Errors: SNOW_STATUS_BAD_INPUT. */
+snow_status snow_zarr_add_coder(const char *name, const json_t *given,
+                                zarr_array *array);
 
 /* A number, or one of those that JSON lacks: "NaN", "Infinity", "-Infinity";
  * false for others. null is 0. */
 bool snow_zarr_number(const json_t *given, double *out);
 
 /* The value of voxels that are not stored. */
-snow_status snow_zarr_take_fill(const zarr_store *store, const json_t *given,
-                                zarr_array *array);
+snow_status snow_zarr_take_fill(const json_t *given, zarr_array *array);
 
 /* --- find.c, place.c ------------------------------------------------------ */
 
