@@ -14,6 +14,8 @@
 typedef struct packed_head {
     uint32_t columns, rows, samples;
     int bits;
+    bool known;  /* the sizes are */
+    bool intact; /* so is all before the values */
     bool unlike; /* components differ in size or depth */
 } packed_head;
 
@@ -21,77 +23,55 @@ static uint32_t big(const unsigned char *at, int bytes) {
     return (uint32_t)snow_number_at(at, bytes, true);
 }
 
-/* Walks the segments up to the start of the frame. */
-static bool read_jpeg(const unsigned char *bytes, size_t size,
+/* Starts of a frame in JPEG: SOF0 to SOF15 except for tables (C4, C8, CC), and
+ * SOF55 of JPEG-LS. */
+static bool is_frame(int marker) {
+    return (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 &&
+            marker != 0xc8 && marker != 0xcc) ||
+           marker == 0xf7;
+}
+
+/* Walks the segments up to the start of the scan, which must be intact:
+ * otherwise GDCM ends the process, and so it does after what libjpeg warns of:
+ * a version of JFIF that is not 1, and an unknown transform of Adobe's, which
+ * is used of three components without JFIF, which defines them.  JPEG-LS (`ls`)
+ * does not use libjpeg. */
+static void read_jpeg(const unsigned char *bytes, size_t size, bool ls,
                       packed_head *out) {
-    size_t at = 2;
+    bool jfif = false, version = false, transform = false;
     if (size < 4 || bytes[0] != 0xff || bytes[1] != 0xd8)
-        return false;
-    while (at + 10 <= size && bytes[at] == 0xff) {
-        int marker = bytes[at + 1];
+        return;
+    for (size_t at = 2; at + 4 <= size && bytes[at] == 0xff;) {
+        const int marker = bytes[at + 1];
         if (marker == 0xff) { /* padding */
             at++;
             continue;
         }
-        /* Start of a frame in JPEG: SOF0 to SOF15 except for tables (C4, C8,
-         * CC), and SOF55 of JPEG-LS. */
-        const bool frame_marker =
-            (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 &&
-             marker != 0xc8 && marker != 0xcc) ||
-            marker == 0xf7;
-        if (frame_marker) {
-            *out = (packed_head){.bits = bytes[at + 4],
-                                 .rows = big(bytes + at + 5, 2),
-                                 .columns = big(bytes + at + 7, 2),
-                                 .samples = bytes[at + 9]};
-            return true;
-        }
-        at += 2 + (size_t)big(bytes + at + 2, 2);
-    }
-    return false;
-}
-
-/* What libjpeg may warn about, after which GDCM ends the process. */
-typedef struct jpeg_signs {
-    bool jfif, version; /* JFIF's segment; its version is not 1 */
-    bool transform;     /* Adobe's, with an unknown transform */
-} jpeg_signs;
-
-/* Adobe's transform is used if there are three components, and no JFIF that
- * defines them. */
-static bool warns(const jpeg_signs *signs, uint32_t samples) {
-    return signs->version || (signs->transform && samples == 3 && !signs->jfif);
-}
-
-/* Returns whether the segments are intact up to the start of the scan:
- * otherwise GDCM ends the process. JPEG-LS (`ls`) does not use libjpeg. */
-static bool has_scan(const unsigned char *bytes, size_t size, bool ls,
-                     uint32_t samples) {
-    jpeg_signs signs = {false, false, false};
-    for (size_t at = 2; at + 4 <= size && bytes[at] == 0xff;) {
-        int marker = bytes[at + 1];
-        if (marker == 0xff) {
-            at++;
-            continue;
-        }
-        size_t length = (size_t)big(bytes + at + 2, 2);
-        bool bare = marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd9);
+        const size_t length = big(bytes + at + 2, 2);
+        const bool bare = marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd9);
         if (bare || length < 2 || length > size - at - 2)
-            return false;
+            return;
         const unsigned char *data = bytes + at + 4;
-        if (marker == 0xe0 && (length - 2) >= 14 && !memcmp(data, "JFIF", 5)) {
-            signs.jfif = true;
-            signs.version |= data[5] != 1;
-        } else if (marker == 0xee && (length - 2) >= 12 &&
-                   !memcmp(data, "Adobe", 5))
-            signs.transform = data[11] > 1;
+        if (is_frame(marker) && length >= 8 && !out->known)
+            *out = (packed_head){.known = true,
+                                 .bits = data[0],
+                                 .rows = big(data + 1, 2),
+                                 .columns = big(data + 3, 2),
+                                 .samples = data[5]};
+        if (marker == 0xe0 && length >= 16 && !memcmp(data, "JFIF", 5)) {
+            jfif = true;
+            version |= data[5] != 1;
+        } else if (marker == 0xee && length >= 14 && !memcmp(data, "Adobe", 5))
+            transform = data[11] > 1;
         if (marker == 0xf7 && !ls)
-            return false;
-        if (marker == 0xda)
-            return ls || !warns(&signs, samples);
+            return;
+        if (marker == 0xda) {
+            out->intact =
+                ls || !(version || (transform && !jfif && out->samples == 3));
+            return;
+        }
         at += 2 + length;
     }
-    return false;
 }
 
 /* Returns whether components have one depth and are not subsampled, as the
@@ -111,7 +91,7 @@ static bool are_alike(const unsigned char *siz, size_t capacity,
 
 /* A bare code stream, or one in the boxes of a file, which are skipped: SIZ
  * follows its start. */
-static bool read_jpeg2000(const unsigned char **bytes, size_t *size,
+static void read_jpeg2000(const unsigned char **bytes, size_t *size,
                           packed_head *out) {
     static const unsigned char start[4] = {0xff, 0x4f, 0xff, 0x51};
     for (size_t at = 0; at + 45 <= *size && at < 4096; at++)
@@ -122,35 +102,14 @@ static bool read_jpeg2000(const unsigned char **bytes, size_t *size,
             *out = (packed_head){.columns = x1 - x0,
                                  .rows = y1 - y0,
                                  .samples = big(siz + 36, 2),
-                                 .bits = (siz[38] & 0x7f) + 1};
+                                 .bits = (siz[38] & 0x7f) + 1,
+                                 .known = x1 > x0 && y1 > y0,
+                                 .intact = true};
             *bytes += at;
             *size -= at;
             out->unlike = !are_alike(siz, *size - 4, out->samples);
-            return x1 > x0 && y1 > y0;
+            return;
         }
-    return false;
-}
-
-/* Returns whether the segments are intact up to the data of the first tile,
- * with a coding style (COD) of sufficient length: GDCM walks them unchecked. */
-static bool has_tile(const unsigned char *bytes, size_t size) {
-    for (size_t at = 0; at + 4 <= size;) {
-        int marker = (int)big(bytes + at, 2);
-        size_t length = (size_t)big(bytes + at + 2, 2);
-        at += 2;
-        if (marker == 0xff93)
-            return true;
-        /* Markers of JPEG 2000 without a segment (T.800, A.1.2). */
-        const bool bare_marker = (marker >= 0xff30 && marker <= 0xff3f) ||
-                                 marker == 0xff4f || marker == 0xff92 ||
-                                 marker == 0xff93 || marker == 0xffd9;
-        if (bare_marker)
-            continue;
-        if (length < (marker == 0xff52 ? 12 : 2) || length > size - at)
-            return false;
-        at += length;
-    }
-    return false;
 }
 
 static bool is_jpeg2000(const char *syntax) {
@@ -184,10 +143,12 @@ snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
                                     const dicom_image *image,
                                     const unsigned char **bytes, size_t *size,
                                     int *bits) {
-    packed_head head;
-    bool known = is_jpeg2000(syntax) ? read_jpeg2000(bytes, size, &head)
-                                     : read_jpeg(*bytes, *size, &head);
-    bool same = known && head.columns == (uint32_t)image->columns &&
+    packed_head head = {0};
+    if (is_jpeg2000(syntax))
+        read_jpeg2000(bytes, size, &head);
+    else
+        read_jpeg(*bytes, *size, is_jpeg_ls(syntax), &head);
+    bool same = head.known && head.columns == (uint32_t)image->columns &&
                 head.rows == (uint32_t)image->rows &&
                 head.samples == (uint32_t)image->samples &&
                 head.bits <= image->allocated &&
@@ -198,12 +159,9 @@ snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
             context, SNOW_STATUS_BAD_INPUT,
             "its compressed colours differ in size or depth, which is not "
             "supported; decompress it, for example with gdcmconv --raw");
-    if (same &&
-        (is_jpeg2000(syntax)
-             ? has_tile(*bytes, *size)
-             : has_scan(*bytes, *size, is_jpeg_ls(syntax), head.samples)))
+    if (same && head.intact)
         return check_whole(context, syntax, *bytes, *size);
-    if (known && !same)
+    if (head.known && !same)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
             "its compressed pixels are %lux%lu of %lu values with %d bits but "

@@ -149,7 +149,8 @@ static bool read_part(rest *r, j2k_stream *s, j2k_part *out) {
         return false;
     rest part = {r->at, from + size};
     while (next_marker(&part) != 0xff93) {
-        if (!next_segment(&part, &next))
+        if (!next_segment(&part, &next) ||
+            (next.marker == 0xff52 && next.size < 10)) /* GDCM reads on */
             return false;
         s->plain &= !is_rare(next.marker) && next.marker != 0xff52;
     }

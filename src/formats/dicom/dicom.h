@@ -324,6 +324,9 @@ snow_status snow_dicom_stack(snow_context *context, dicom_frame *frames,
                              size_t count, bool gaps, dicom_stack *out);
 void snow_dicom_stack_free(dicom_stack *stack);
 
+/* What info says of any stack. */
+void snow_dicom_describe(const dicom_stack *stack, snow_volume_info *info);
+
 /* --- files.c -------------------------------------------------------------- */
 
 /* True when a file of the list looks like DICOM; slices of other formats by

@@ -38,23 +38,21 @@ static int compare_images(const dicom_image *a, const dicom_image *b) {
     return by ? by : compare_kinds(a, b);
 }
 
+/* Numbers that differ only by rounding or printing are equal. */
+static int compare_about(double a, double b, double near) {
+    return fabs(a - b) <= near ? 0 : snow_dicom_order(a, b);
+}
+
 /* By their plane. */
 static int compare_planes(const dicom_frame *a, const dicom_frame *b) {
     int by = b->placed - a->placed;
     for (int i = 0; i < 3 && !by && a->placed; i++) {
-        /* Numbers that differ only by rounding or printing are equal. */
-        by = fabs(a->row[i] - b->row[i]) <= SAME_COSINE
-                 ? 0
-                 : snow_dicom_order(a->row[i], b->row[i]);
+        by = compare_about(a->row[i], b->row[i], SAME_COSINE);
         if (!by)
-            by = fabs(a->column[i] - b->column[i]) <= SAME_COSINE
-                     ? 0
-                     : snow_dicom_order(a->column[i], b->column[i]);
+            by = compare_about(a->column[i], b->column[i], SAME_COSINE);
     }
     for (int i = 0; i < 2 && !by; i++)
-        by = fabs(a->pixel[i] - b->pixel[i]) <= (1e-4 * a->pixel[i])
-                 ? 0
-                 : snow_dicom_order(a->pixel[i], b->pixel[i]);
+        by = compare_about(a->pixel[i], b->pixel[i], 1e-4 * a->pixel[i]);
     return by;
 }
 

@@ -275,17 +275,9 @@ static snow_status describe(snow_context *context, const dicom_stack *stack,
     for (size_t i = 0; i < stack->starts[stack->places]; i++)
         if (segment_of(&stack->frames[i]) > most)
             most = segment_of(&stack->frames[i]);
-    *info = snow_volume_info_default("dicom");
+    snow_dicom_describe(stack, info);
     info->type = most > UINT8_MAX || image->allocated == 16 ? SNOW_TYPE_UINT16
                                                             : SNOW_TYPE_UINT8;
-    info->dims[0] = image->columns;
-    info->dims[1] = image->rows;
-    info->dims[2] = (int64_t)stack->slice_count;
-    info->medical = true;
-    memcpy(info->unit, "mm", 3);
-    memcpy(info->matrix, stack->matrix, sizeof info->matrix);
-    memcpy(info->modality, image->modality, sizeof info->modality);
-    memcpy(info->description, image->description, sizeof info->description);
     warn_about_segments(context, stack, snow_spacing_given(options));
     SNOW_TRY(snow_volume_pick_channel(context, options, 1, info, &channel));
     return snow_volume_pick_time(context, "volume", options, info);

@@ -183,3 +183,17 @@ void snow_dicom_stack_free(dicom_stack *stack) {
     stack->slices = NULL;
     stack->starts = NULL;
 }
+
+void snow_dicom_describe(const dicom_stack *stack, snow_volume_info *info) {
+    const dicom_image *image = stack->frames->image;
+    *info = snow_volume_info_default("dicom");
+    info->dims[0] = snow_dicom_columns(image);
+    info->dims[1] = snow_dicom_rows(image);
+    info->dims[2] = (int64_t)stack->slice_count;
+    info->times = (int64_t)stack->times;
+    info->medical = stack->placed;
+    memcpy(info->unit, "mm", 3);
+    memcpy(info->matrix, stack->matrix, sizeof info->matrix);
+    memcpy(info->modality, image->modality, sizeof info->modality);
+    memcpy(info->description, image->description, sizeof info->description);
+}

@@ -443,7 +443,7 @@ static snow_status describe_stack(const dicom_input *input,
     const dicom_frame *first = stack->frames;
     const dicom_image *image = first->image;
     bool pads;
-    *info = snow_volume_info_default("dicom");
+    snow_dicom_describe(stack, info);
     SNOW_TRY(snow_dicom_check_mosaic(context, first));
     SNOW_TRY(stored_type(context, image, &info->type));
     SNOW_TRY(check_colors(context, image));
@@ -453,24 +453,15 @@ static snow_status describe_stack(const dicom_input *input,
             image->allocated > 16 ? SNOW_TYPE_FLOAT64 : SNOW_TYPE_FLOAT32;
     else if (has_palette(image))
         info->type = SNOW_TYPE_UINT8;
-    info->dims[0] = snow_dicom_columns(image);
-    info->dims[1] = snow_dicom_rows(image);
-    info->dims[2] = (int64_t)stack->slice_count;
-    info->times = (int64_t)stack->times;
     bool plain = d->scales || has_palette(image);
     info->slope = plain ? 1 : first->slope;
     info->intercept = plain ? 0 : first->intercept;
-    info->medical = stack->placed;
     /* A CT's rescale leads to them unless it names another unit (PS3.3,
      * C.8.2.1). */
     info->hounsfield =
         !strcmp(image->rescale_type, "HU") ||
         (!strcmp(image->modality, "CT") && !*image->rescale_type &&
          (d->scales || first->intercept != 0));
-    memcpy(info->unit, "mm", 3);
-    memcpy(info->matrix, stack->matrix, sizeof info->matrix);
-    memcpy(info->modality, image->modality, sizeof info->modality);
-    memcpy(info->description, image->description, sizeof info->description);
     memcpy(info->window, first[stack->places / 2 * stack->times].window,
            sizeof info->window);
     SNOW_TRY(warn_lost(context, stack));

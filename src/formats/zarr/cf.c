@@ -76,13 +76,12 @@ static void read_attributes(const json_t *from, cf_attributes *out) {
 
 /* --- coordinates ---------------------------------------------------------- */
 
-static snow_status read_values(const zarr_store *store, const zarr_array *array,
-                               double **out) {
-    snow_context *context = store->context;
+static snow_status read_values(const zarr_array *array, double **out) {
+    snow_context *context = array->store->context;
     const int64_t count = array->sizes[0];
-    zarr_box box = {.store = store,
+    zarr_box box = {.store = array->store,
                     .array = array,
-                    .roles = {{0, -1, -1, -1, -1}, false},
+                    .roles = {{0, -1, -1}, -1, -1, false},
                     .end = {count}};
     snow_volume_info info = snow_volume_info_default("zarr");
     snow_volume *line;
@@ -126,17 +125,18 @@ static snow_status take_node(const zarr_store *store, const char *path,
         return SNOW_STATUS_OK;
     read_attributes(node->attributes, &says);
     *hint = snow_cf_hint(name, &says);
-    SNOW_TRY(read_values(store, &array, &values));
+    SNOW_TRY(read_values(&array, &values));
     snow_cf_take_axis(store->context, &says, array.type, false, count, values,
                       out);
     return SNOW_STATUS_OK;
 }
 
 /* Looks for an array of the name in the array's group, and in those above. */
-static snow_status read_axis(const zarr_store *store, const zarr_array *array,
-                             int axis, snow_axis_hint *hint, cf_axis *out) {
+static snow_status read_axis(const zarr_array *array, int axis,
+                             snow_axis_hint *hint, cf_axis *out) {
     char group[ZARR_PATH_BYTES], path[ZARR_PATH_BYTES];
     const char *name = array->names[axis];
+    const zarr_store *store = array->store;
     memcpy(group, array->path, sizeof group);
     for (char *end = group; *group && end;) {
         zarr_node node;
@@ -171,8 +171,7 @@ static bool masks_fill(const zarr_found *found) {
            (array->type >= SNOW_TYPE_FLOAT32 || array->fill_number.value != 0);
 }
 
-snow_status snow_zarr_read_cf(const zarr_store *store, const zarr_found *found,
-                              zarr_cf *out) {
+snow_status snow_zarr_read_cf(const zarr_found *found, zarr_cf *out) {
     const zarr_array *array = &found->array;
     bool applies;
     memset(out, 0, sizeof *out);
@@ -188,7 +187,7 @@ snow_status snow_zarr_read_cf(const zarr_store *store, const zarr_found *found,
         out->named = true;
         *hint = snow_cf_hint(name, NULL);
         if (!strchr(name, '/') && *name != '.')
-            SNOW_TRY(read_axis(store, array, i, hint, &out->axes[i]));
+            SNOW_TRY(read_axis(array, i, hint, &out->axes[i]));
         applies |= out->axes[i].coordinates != NULL;
     }
     out->named |= applies && !found->image;
@@ -197,9 +196,9 @@ snow_status snow_zarr_read_cf(const zarr_store *store, const zarr_found *found,
         fills->numbers[fills->count++] = array->fill_number;
         applies = true;
     }
-    out->values =
-        applies ? snow_cf_settle(store->context, &out->says, array->type, false)
-                : snow_cf_values_default(array->type);
+    out->values = applies ? snow_cf_settle(array->store->context, &out->says,
+                                           array->type, false)
+                          : snow_cf_values_default(array->type);
     return SNOW_STATUS_OK;
 }
 

@@ -185,8 +185,8 @@ static void find_patch(const filler *f, const int64_t *chunk, patch *out) {
         overlap(f, chunk, i, &low, &high);
         out->from += (uint64_t)(low - chunk[i] * array->chunk[i]) * f->step[i];
         out->to += (uint64_t)(low - f->box->first[i]) * f->place[i];
-        for (int role = ZARR_X; role <= ZARR_Z; role++)
-            if (f->box->roles.axis[role] == i) {
+        for (int role = 0; role < 3; role++)
+            if (f->box->roles.space[role] == i) {
                 out->count[role] = high - low;
                 out->step[role] = f->step[i];
                 out->place[role] = f->place[i];
@@ -342,8 +342,8 @@ static void lay_steps(filler *f) {
         f->step[array->order[i]] = f->bytes;
         f->bytes *= (uint64_t)array->chunk[array->order[i]];
     }
-    for (int role = ZARR_X; role <= ZARR_Z; role++) {
-        int axis = f->box->roles.axis[role];
+    for (int role = 0; role < 3; role++) {
+        int axis = f->box->roles.space[role];
         if (axis >= 0) {
             f->place[axis] = step;
             step *= (uint64_t)(f->box->end[axis] - f->box->first[axis]);

@@ -16,63 +16,63 @@
 
 /* --- roles ---------------------------------------------------------------- */
 
-static int role_of_name(const char *name) {
-    static const struct {
+static const snow_axes no_roles = {{-1, -1, -1}, -1, -1, false};
+
+/* The role that a name is of; NULL: none. */
+static int *role_of_name(snow_axes *roles, const char *name) {
+    const struct {
         const char *name;
-        int role;
-    } names[] = {{"x", ZARR_X},
-                 {"y", ZARR_Y},
-                 {"z", ZARR_Z},
-                 {"c", ZARR_CHANNEL},
-                 {"channel", ZARR_CHANNEL},
-                 {"t", ZARR_TIME},
-                 {"time", ZARR_TIME}};
+        int *role;
+    } names[] = {{"x", &roles->space[0]},      {"y", &roles->space[1]},
+                 {"z", &roles->space[2]},      {"c", &roles->channel},
+                 {"channel", &roles->channel}, {"t", &roles->time},
+                 {"time", &roles->time}};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (snow_same_name(name, names[i].name))
             return names[i].role;
-    return -1;
+    return NULL;
 }
 
 /* For names that are all known and unique. */
-static bool assign_names(const zarr_array *array, zarr_roles *out) {
-    zarr_roles roles = {{-1, -1, -1, -1, -1}, false};
+static bool assign_names(const zarr_array *array, snow_axes *out) {
+    snow_axes roles = no_roles;
     for (int i = 0; i < array->axes; i++) {
-        int role = role_of_name(array->names[i]);
-        if (role < 0 || roles.axis[role] >= 0)
+        int *role = role_of_name(&roles, array->names[i]);
+        if (!role || *role >= 0)
             return false;
-        roles.axis[role] = i;
+        *role = i;
     }
     *out = roles;
     return true;
 }
 
 /* From the last axis on.  Further axes in front must have one entry. */
-static void assign_places(const zarr_array *array, zarr_roles *out) {
-    static const int few[] = {ZARR_X, ZARR_Y, ZARR_Z, ZARR_TIME};
-    static const int many[] = {ZARR_X, ZARR_Y, ZARR_Z, ZARR_CHANNEL, ZARR_TIME};
-    int axes = array->axes;
-    *out = (zarr_roles){{-1, -1, -1, -1, -1}, false};
-    for (int i = 0; i < axes && i < (axes > 4 ? 5 : 4); i++)
-        out->axis[axes > 4 ? many[i] : few[i]] = axes - 1 - i;
+static void assign_places(const zarr_array *array, snow_axes *out) {
+    const int axes = array->axes;
+    *out = no_roles;
+    for (int i = 0; i < 3 && i < axes; i++)
+        out->space[i] = axes - 1 - i;
+    if (axes > 4)
+        out->channel = axes - 4;
+    if (axes > 3)
+        out->time = axes > 4 ? axes - 5 : 0;
 }
 
 /* By the coordinates of a data set, as in NetCDF. */
 static bool assign_hints(const zarr_array *array, const zarr_cf *cf,
-                         zarr_roles *out) {
+                         snow_axes *out) {
     int64_t sizes[SNOW_MOST_AXES];
-    snow_axes axes;
     const int last = array->axes - 1;
     if (!cf->named || array->axes > SNOW_MOST_AXES)
         return false;
     for (int i = 0; i < SNOW_MOST_AXES; i++)
         sizes[i] = i <= last ? array->sizes[last - i] : 1;
-    if (!snow_axes_assign(array->axes, sizes, cf->hints, &axes))
+    if (!snow_axes_assign(array->axes, sizes, cf->hints, out))
         return false;
-    const int roles[] = {axes.space[0], axes.space[1], axes.space[2],
-                         axes.channel, axes.time};
-    for (int role = 0; role < ZARR_ROLES; role++)
-        out->axis[role] = roles[role] < 0 ? -1 : last - roles[role];
-    out->interleaved = axes.interleaved;
+    int *const roles[] = {&out->space[0], &out->space[1], &out->space[2],
+                          &out->channel, &out->time};
+    for (int n = 0; n < 5; n++)
+        *roles[n] = *roles[n] < 0 ? -1 : last - *roles[n];
     return true;
 }
 
@@ -88,77 +88,73 @@ static const char *axis_name(const zarr_found *found, int axis) {
 }
 
 /* Spatial axes with other names are z, y, x in this order, as far as these are
- * free. */
-static int role_of_kind(const zarr_found *found, int axis,
-                        const zarr_roles *roles) {
+ * free.  NULL: none. */
+static int *role_of_kind(const zarr_found *found, int axis, snow_axes *roles) {
     const json_t *own =
         json_array_get(json_object_get(found->image, "axes"), (size_t)axis);
     const char *kind = json_string_value(json_object_get(own, "type"));
     if (!kind)
-        return -1;
-    if (!strcmp(kind, "channel") && roles->axis[ZARR_CHANNEL] < 0)
-        return ZARR_CHANNEL;
-    if (!strcmp(kind, "time") && roles->axis[ZARR_TIME] < 0)
-        return ZARR_TIME;
-    for (int role = ZARR_X; role <= ZARR_Z && !strcmp(kind, "space"); role++)
-        if (roles->axis[role] < 0)
-            return role;
-    return -1;
+        return NULL;
+    if (!strcmp(kind, "channel") && roles->channel < 0)
+        return &roles->channel;
+    if (!strcmp(kind, "time") && roles->time < 0)
+        return &roles->time;
+    for (int i = 0; i < 3 && !strcmp(kind, "space"); i++)
+        if (roles->space[i] < 0)
+            return &roles->space[i];
+    return NULL;
 }
 
 /* Names have priority, then kinds from the last axis on. */
-static snow_status assign_image(const zarr_store *store, zarr_found *found,
-                                zarr_roles *out) {
+static snow_status assign_image(zarr_found *found, snow_axes *out) {
     zarr_array *array = &found->array;
     const json_t *axes = json_object_get(found->image, "axes");
-    int role_of[ZARR_MOST_AXES];
-    *out = (zarr_roles){{-1, -1, -1, -1, -1}, false};
+    bool assigned[ZARR_MOST_AXES];
+    *out = no_roles;
     if (axes ? json_array_size(axes) != (size_t)array->axes : array->axes != 5)
-        return snow_zarr_fail(
-            store, array->path,
-            "has %d axes, but its image %zu; correct one of them", array->axes,
-            axes ? json_array_size(axes) : 5);
+        return ZARR_FAIL(array,
+                         "has %d axes, but its image %zu; correct one of them",
+                         array->axes, axes ? json_array_size(axes) : 5);
     for (int i = 0; i < array->axes; i++) {
         const char *name = axis_name(found, i);
-        role_of[i] = name ? role_of_name(name) : -1;
-        if (role_of[i] >= 0 && out->axis[role_of[i]] >= 0)
-            role_of[i] = -1;
-        if (role_of[i] >= 0)
-            out->axis[role_of[i]] = i;
+        int *role = name ? role_of_name(out, name) : NULL;
+        assigned[i] = role && *role < 0;
+        if (assigned[i])
+            *role = i;
         snprintf(array->names[i], ZARR_NAME_BYTES, "%.30s", name ? name : "?");
     }
     for (int i = array->axes - 1; i >= 0; i--) {
-        int role = role_of[i] < 0 ? role_of_kind(found, i, out) : -1;
-        if (role >= 0)
-            out->axis[role] = i;
+        int *role = assigned[i] ? NULL : role_of_kind(found, i, out);
+        if (role)
+            *role = i;
     }
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
-                             const zarr_cf *cf, zarr_roles *out) {
+snow_status snow_zarr_assign(zarr_found *found, const zarr_cf *cf,
+                             snow_axes *out) {
     zarr_array *array = &found->array;
     if (found->image)
-        SNOW_TRY(assign_image(store, found, out));
+        SNOW_TRY(assign_image(found, out));
     else if (!assign_names(array, out) && !assign_hints(array, cf, out))
         assign_places(array, out);
+    const int used[] = {out->space[0], out->space[1], out->space[2],
+                        out->channel, out->time};
     for (int i = 0; i < array->axes; i++) {
-        bool used = false;
-        for (int role = 0; role < ZARR_ROLES; role++)
-            used |= out->axis[role] == i;
-        if (!used && array->sizes[i] > 1)
-            return snow_zarr_fail(store, array->path,
-                                  "has %lld entries along axis %d%s%s%s, which "
-                                  "no option selects; save a part of the array "
-                                  "with only the axes t, c, z, y, x",
-                                  (long long)array->sizes[i], i,
-                                  *array->names[i] ? " (" : "", array->names[i],
-                                  *array->names[i] ? ")" : "");
+        int role = 0;
+        while (role < 5 && used[role] != i)
+            role++;
+        if (role == 5 && array->sizes[i] > 1)
+            return ZARR_FAIL(array,
+                             "has %lld entries along axis %d%s%s%s, which no "
+                             "option selects; save a part of the array with "
+                             "only the axes t, c, z, y, x",
+                             (long long)array->sizes[i], i,
+                             *array->names[i] ? " (" : "", array->names[i],
+                             *array->names[i] ? ")" : "");
+        if (role < 5 && !*array->names[i])
+            array->names[i][0] = "xyzct"[role];
     }
-    for (int role = 0; role < ZARR_ROLES; role++)
-        if (out->axis[role] >= 0 && !*array->names[out->axis[role]])
-            snprintf(array->names[out->axis[role]], ZARR_NAME_BYTES, "%c",
-                     "xyzct"[role]);
     return SNOW_STATUS_OK;
 }
 
@@ -213,9 +209,8 @@ typedef struct placement {
 } placement;
 
 /* Reads one number for each axis: finite, and for a scale not 0. */
-static snow_status read_vector(const zarr_store *store, const zarr_array *array,
-                               const json_t *list, const char *what,
-                               double *out) {
+static snow_status read_vector(const zarr_array *array, const json_t *list,
+                               const char *what, double *out) {
     bool right = json_array_size(list) == (size_t)array->axes;
     bool is_scale = !strcmp(what, "scale");
     for (int i = 0; i < array->axes && right; i++) {
@@ -226,15 +221,15 @@ static snow_status read_vector(const zarr_store *store, const zarr_array *array,
     }
     if (right)
         return SNOW_STATUS_OK;
-    return snow_zarr_fail(store, array->path,
-                          "has a coordinate transformation whose %s is not "
-                          "%d numbers%s; correct the attributes of its image",
-                          what, array->axes, is_scale ? " other than 0" : "");
+    return ZARR_FAIL(array,
+                     "has a coordinate transformation whose %s is not "
+                     "%d numbers%s; correct the attributes of its image",
+                     what, array->axes, is_scale ? " other than 0" : "");
 }
 
 /* Each transformation applies to the result of those before it. */
-static snow_status transform(const zarr_store *store, const zarr_array *array,
-                             const json_t *owner, placement *place) {
+static snow_status transform(const zarr_array *array, const json_t *owner,
+                             placement *place) {
     const json_t *list = json_object_get(owner, "coordinateTransformations");
     double values[ZARR_MOST_AXES];
     for (size_t k = 0; k < json_array_size(list); k++) {
@@ -242,8 +237,8 @@ static snow_status transform(const zarr_store *store, const zarr_array *array,
         const char *kind = json_string_value(json_object_get(one, "type"));
         bool is_scale = kind && !strcmp(kind, "scale");
         if (is_scale || (kind && !strcmp(kind, "translation"))) {
-            SNOW_TRY(read_vector(store, array, json_object_get(one, kind), kind,
-                                 values));
+            SNOW_TRY(
+                read_vector(array, json_object_get(one, kind), kind, values));
             for (int i = 0; i < array->axes; i++) {
                 place->scale[i] *= is_scale ? values[i] : 1;
                 place->shift[i] = is_scale ? place->shift[i] * values[i]
@@ -251,7 +246,7 @@ static snow_status transform(const zarr_store *store, const zarr_array *array,
             }
             place->given = true;
         } else if (!kind || strcmp(kind, "identity") != 0) {
-            snow_notify(store->context,
+            snow_notify(array->store->context,
                         "the coordinate transformation \"%.40s\" is ignored",
                         kind ? kind : "?");
         }
@@ -259,24 +254,22 @@ static snow_status transform(const zarr_store *store, const zarr_array *array,
     return SNOW_STATUS_OK;
 }
 
-static void take_units(const zarr_store *store, const zarr_found *found,
-                       const zarr_roles *roles, double factors[3],
-                       snow_volume_info *info) {
+static void take_units(const zarr_found *found, const snow_axes *roles,
+                       double factors[3], snow_volume_info *info) {
     const json_t *axes = json_object_get(found->image, "axes");
     const char *texts[3] = {NULL};
-    for (int role = ZARR_X; role <= ZARR_Z; role++) {
-        const json_t *axis = json_array_get(axes, (size_t)roles->axis[role]);
+    for (int role = 0; role < 3; role++) {
+        const json_t *axis = json_array_get(axes, (size_t)roles->space[role]);
         const char *unit = json_string_value(json_object_get(axis, "unit"));
-        if (roles->axis[role] >= 0)
+        if (roles->space[role] >= 0)
             texts[role] = unit ? unit : "";
     }
-    snow_length_join(store->context, texts, factors, info->unit);
+    snow_length_join(found->array.store->context, texts, factors, info->unit);
 }
 
 /* Before version 0.4 resolution levels have no scale: it is the ratio of their
  * size to that of the finest level, if that exists. */
-static snow_status compare_sizes(const zarr_store *store,
-                                 const zarr_found *found, placement *place) {
+static snow_status compare_sizes(const zarr_found *found, placement *place) {
     const zarr_array *array = &found->array;
     const char *own = snow_zarr_level_path(found->image, (size_t)found->index);
     const char *other = snow_zarr_level_path(found->image, 0);
@@ -287,7 +280,7 @@ static snow_status compare_sizes(const zarr_store *store,
         length + strlen(other) >= ZARR_PATH_BYTES / 2)
         return SNOW_STATUS_OK;
     snprintf(path, sizeof path, "%.*s%s", (int)length, array->path, other);
-    SNOW_TRY(snow_zarr_look(store, path, &node));
+    SNOW_TRY(snow_zarr_look(array->store, path, &node));
     const json_t *shape = json_object_get(node.meta, "shape");
     bool is_like = node.kind == ZARR_ARRAY &&
                    json_array_size(shape) == (size_t)array->axes;
@@ -303,21 +296,21 @@ static snow_status compare_sizes(const zarr_store *store,
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_zarr_place(const zarr_store *store, const zarr_found *found,
-                            const zarr_roles *roles, snow_volume_info *info) {
+snow_status snow_zarr_place(const zarr_found *found, const snow_axes *roles,
+                            snow_volume_info *info) {
     placement place = {.given = false};
     double factors[3];
     if (!found->image)
         return SNOW_STATUS_OK;
     for (int i = 0; i < ZARR_MOST_AXES; i++)
         place.scale[i] = 1;
-    SNOW_TRY(transform(store, &found->array, found->level, &place));
+    SNOW_TRY(transform(&found->array, found->level, &place));
     if (!place.given)
-        SNOW_TRY(compare_sizes(store, found, &place));
-    SNOW_TRY(transform(store, &found->array, found->image, &place));
-    take_units(store, found, roles, factors, info);
-    for (int role = ZARR_X; role <= ZARR_Z; role++) {
-        int axis = roles->axis[role];
+        SNOW_TRY(compare_sizes(found, &place));
+    SNOW_TRY(transform(&found->array, found->image, &place));
+    take_units(found, roles, factors, info);
+    for (int role = 0; role < 3; role++) {
+        int axis = roles->space[role];
         /* A 2-D image is as deep as its pixels are wide. */
         info->matrix[role][role] = axis >= 0 ? place.scale[axis] * factors[role]
                                              : fabs(info->matrix[0][0]);

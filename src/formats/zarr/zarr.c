@@ -116,18 +116,14 @@ static snow_status pick(snow_context *context,
                         const snow_volume_options *options, zarr_box *box,
                         snow_volume_info *info) {
     const zarr_array *array = box->array;
-    const int *axis = box->roles.axis;
-    const snow_axes roles = {{axis[ZARR_X], axis[ZARR_Y], axis[ZARR_Z]},
-                             axis[ZARR_TIME],
-                             axis[ZARR_CHANNEL],
-                             box->roles.interleaved};
+    const snow_axes *roles = &box->roles;
     int64_t channel;
-    SNOW_TRY(snow_volume_pick_axes(context, options, &roles, array->sizes, info,
+    SNOW_TRY(snow_volume_pick_axes(context, options, roles, array->sizes, info,
                                    &channel));
     for (int i = 0; i < array->axes; i++) {
-        int64_t at = i == axis[ZARR_CHANNEL] ? channel
-                     : i == axis[ZARR_TIME]  ? info->time
-                                             : 0;
+        int64_t at = i == roles->channel ? channel
+                     : i == roles->time  ? info->time
+                                         : 0;
         box->first[i] = at;
         box->end[i] = at + 1;
     }
@@ -135,8 +131,8 @@ static snow_status pick(snow_context *context,
 }
 
 static void crop(const snow_region *region, zarr_box *box) {
-    for (int role = ZARR_X; role <= ZARR_Z; role++) {
-        int axis = box->roles.axis[role];
+    for (int role = 0; role < 3; role++) {
+        int axis = box->roles.space[role];
         if (axis >= 0) {
             box->first[axis] = region->first[role];
             box->end[axis] = region->first[role] + region->count[role];
@@ -147,8 +143,8 @@ static void crop(const snow_region *region, zarr_box *box) {
 /* Chunks are unpacked as a whole. */
 static void note_chunks(const zarr_box *box, const snow_region *region) {
     int64_t size[3];
-    for (int role = ZARR_X; role <= ZARR_Z; role++) {
-        const int axis = box->roles.axis[role];
+    for (int role = 0; role < 3; role++) {
+        const int axis = box->roles.space[role];
         size[role] = axis < 0 ? 1 : box->array->chunk[axis];
     }
     snow_region_in_blocks(box->store->context, region, size);
@@ -216,16 +212,16 @@ static snow_status read_stored(void *user, const snow_volume_options *options,
 /* What arrays of data sets have: coordinates, time, names. */
 static void describe_array(zarr_job *job, const snow_volume_options *options,
                            snow_volume_info *info) {
-    const int *axis = job->box.roles.axis;
+    const snow_axes *roles = &job->box.roles;
     const char *path = job->box.array->path, *slash = strrchr(path, '/');
     cf_axis space[3] = {{0}};
     for (int i = 0; i < 3; i++)
-        if (axis[i] >= 0)
-            space[i] = job->cf.axes[axis[i]];
+        if (roles->space[i] >= 0)
+            space[i] = job->cf.axes[roles->space[i]];
     if (job->cf.named)
         snow_cf_name(slash ? slash + 1 : path, &job->cf.says, info);
-    if (axis[ZARR_TIME] >= 0)
-        snow_cf_time(&job->cf.axes[axis[ZARR_TIME]], info);
+    if (roles->time >= 0)
+        snow_cf_time(&job->cf.axes[roles->time], info);
     snow_cf_place(job->box.store->context, space, options, info, &job->grid);
 }
 
@@ -234,16 +230,16 @@ static snow_status read_job(zarr_job *job, zarr_found *found,
                             snow_volume_info *info, snow_volume **out) {
     const zarr_store *store = job->box.store;
     zarr_box *box = &job->box;
-    SNOW_TRY(snow_zarr_read_cf(store, found, &job->cf));
-    SNOW_TRY(snow_zarr_assign(store, found, &job->cf, &box->roles));
-    const int axis = box->roles.axis[ZARR_CHANNEL];
+    SNOW_TRY(snow_zarr_read_cf(found, &job->cf));
+    SNOW_TRY(snow_zarr_assign(found, &job->cf, &box->roles));
+    const int axis = box->roles.channel;
     info->type = job->cf.values.type;
     if (!box->roles.interleaved)
         snow_zarr_describe_channels(
             found, axis < 0 ? 1 : found->array.sizes[axis], info);
     SNOW_TRY(pick(store->context, options, box, info));
     spell(found, info->storage, sizeof info->storage);
-    SNOW_TRY(snow_zarr_place(store, found, &box->roles, info));
+    SNOW_TRY(snow_zarr_place(found, &box->roles, info));
     describe_array(job, options, info);
     return snow_cf_read(store->context, &job->grid, &job->cf.values,
                         read_stored, job, options, info, out);

@@ -209,28 +209,21 @@ typedef struct zarr_cf {
 
 /* Reads attributes and coordinates.  `out` must be released in any case.
  * Errors: SNOW_STATUS_BAD_INPUT (damaged coordinates). */
-snow_status snow_zarr_read_cf(const zarr_store *store, const zarr_found *found,
-                              zarr_cf *out);
+snow_status snow_zarr_read_cf(const zarr_found *found, zarr_cf *out);
 void snow_zarr_release_cf(const zarr_store *store, zarr_cf *cf);
 
-/* The axis of the array that is x, y, z, channel and time; -1: none. */
-enum { ZARR_X, ZARR_Y, ZARR_Z, ZARR_CHANNEL, ZARR_TIME, ZARR_ROLES };
-typedef struct zarr_roles {
-    int axis[ZARR_ROLES];
-    bool interleaved; /* channels are the components of a voxel */
-} zarr_roles;
-
-/* Assigns the roles of the array's axes, and completes their names. */
-snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
-                             const zarr_cf *cf, zarr_roles *out);
+/* Assigns the roles of the array's axes, which here count in the order of the
+ * file, and completes their names. */
+snow_status snow_zarr_assign(zarr_found *found, const zarr_cf *cf,
+                             snow_axes *out);
 
 /* What "omero" says of the channels of an image, of which there are so many. */
 void snow_zarr_describe_channels(const zarr_found *found, int64_t count,
                                  snow_volume_info *info);
 
 /* Sets matrix and unit of the info. */
-snow_status snow_zarr_place(const zarr_store *store, const zarr_found *found,
-                            const zarr_roles *roles, snow_volume_info *info);
+snow_status snow_zarr_place(const zarr_found *found, const snow_axes *roles,
+                            snow_volume_info *info);
 
 /* --- unpack.c ------------------------------------------------------------- */
 
@@ -286,7 +279,7 @@ uint32_t snow_zarr_sum(const unsigned char *bytes, size_t count);
 typedef struct zarr_box {
     const zarr_store *store;
     const zarr_array *array;
-    zarr_roles roles;
+    snow_axes roles;
     int64_t first[ZARR_MOST_AXES], end[ZARR_MOST_AXES];
     char separator; /* of the files that there are; 0: none was found yet */
 } zarr_box;
