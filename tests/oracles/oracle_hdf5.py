@@ -204,6 +204,10 @@ with h5py.File("f.h5", "w") as file:
     file["resolution"].attrs["offset"] = (100, 20, 3)
     file["zero"] = a
     file["zero"].attrs["spacing"] = (0, 1, 1)
+    # fiji/HDF5_Vibez#10: of a picture two; others have one for each axis.
+    file["plane"], file["steps"] = a[0], [a, a]
+    file["plane"].attrs["element_size_um"] = (1, 0.5)
+    file["steps"].attrs["element_size_um"] = (9, 2, 1, 0.5)
 for name, place, unit in (
         ("element_size_um", oracle.affine((0.5, 1, 2)), "um"),
         ("resolution", oracle.affine((4.5, 4, 40), (3, 20, 100)), "nm"),
@@ -211,6 +215,8 @@ for name, place, unit in (
         ("spacing", oracle.affine((4, 2, 1)), "")):
     oracle.expect(f"f.h5:/{name}", a, place, unit=unit)
 oracle.expect("f.h5:/zero", a)
+oracle.expect("f.h5:/plane", a[:1], oracle.affine((0.5, 1, 0.5)), unit="um")
+oracle.expect("f.h5:/steps", a, oracle.affine((0.5, 1, 2)), unit="um")
 
 # Dimension scales, packed and missing values.
 packed = oracle.sample("<i2", (4, 5, 6))

@@ -35,21 +35,35 @@ static bool all_above_0(const double *values) {
     return true;
 }
 
-/* Uses three numbers z y x of the data set. */
-static bool place_by_size(const hdf5_set *set, snow_volume_info *info) {
+/* Uses three numbers z y x of the data set.  Of its size in um there may be one
+ * for each axis, or of a picture two. */
+static bool place_by_size(snow_context *context, const hdf5_set *set,
+                          snow_volume_info *info) {
     static const struct {
         const char *name, *unit;
     } sizes[] = {{"element_size_um", "um"},
                  {"resolution", "nm"},
                  {"voxel_size", ""},
                  {"spacing", ""}};
-    double size[3], offset[3];
+    double all[HDF5_MOST_AXES], offset[3];
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-        if (snow_hdf5_numbers(set->id, sizes[i].name, 3, size) != 3 ||
-            !all_above_0(size))
+        const int count =
+            snow_hdf5_numbers(set->id, sizes[i].name, HDF5_MOST_AXES, all);
+        if (i ? count != 3 : count < 2)
             continue;
+        const double size[3] = {all[count > 2 ? count - 3 : count - 1],
+                                all[count - 2], all[count - 1]};
+        if (!all_above_0(size)) {
+            snow_notify(context,
+                        "%s is ignored: its lengths are not above 0; "
+                        "--spacing sets others",
+                        sizes[i].name);
+            continue;
+        }
         for (int a = 0; a < 3; a++)
             info->matrix[a][a] = size[2 - a];
+        if (count == 2 && set->axes > 2 && set->sizes[set->axes - 3] > 1)
+            snow_notify(context, SNOW_WIDTH_IS_DISTANCE, size[2]);
         memcpy(info->unit, sizes[i].unit, strlen(sizes[i].unit) + 1);
         if (snow_hdf5_numbers(set->id, "offset", 3, offset) == 3)
             for (int a = 0; a < 3; a++)
@@ -365,7 +379,8 @@ void snow_hdf5_place(snow_context *context, const hdf5_file *file,
                      const hdf5_set *set, const hdf5_axes *axes,
                      const snow_volume_options *options, snow_volume_info *info,
                      snow_uneven *grid) {
-    if (place_by_size(set, info) || place_by_mesh(file, set->id, set, info) ||
+    if (place_by_size(context, set, info) ||
+        place_by_mesh(file, set->id, set, info) ||
         snow_hdf5_place_image(file, set, info) ||
         snow_hdf5_place_imaris(file, set, info))
         return;
