@@ -199,3 +199,37 @@ snow_status snow_read_numbers(snow_source *source, snow_type type, bool commas,
     word_reader reader = {.source = source, .commas = commas};
     return read_words(&reader, type, part, voxels);
 }
+
+/* Splits off the next word; 0 at the end, -1 for one that is too long. */
+static int split_word(const char **at, const char *between, char word[64]) {
+    char apart[16] = " \t\r\n";
+    strncat(apart, between, 8);
+    *at += strspn(*at, apart);
+    const size_t length = strcspn(*at, apart);
+    if (length >= 64)
+        return -1;
+    memcpy(word, *at, length);
+    word[length] = 0;
+    *at += length;
+    return length > 0;
+}
+
+int snow_text_reals(const char *text, const char *between, double *out,
+                    int most) {
+    char word[64];
+    int count = 0, found;
+    while ((found = split_word(&text, between, word)) > 0)
+        if (count == most || !snow_parse_double(word, &out[count++]))
+            return -1;
+    return found < 0 ? -1 : count;
+}
+
+int snow_text_integers(const char *text, const char *between, int64_t *out,
+                       int most) {
+    char word[64];
+    int count = 0, found;
+    while ((found = split_word(&text, between, word)) > 0)
+        if (count == most || !snow_parse_int64(word, &out[count++]))
+            return -1;
+    return found < 0 ? -1 : count;
+}

@@ -17,4 +17,11 @@ bool snow_store_number(snow_type type, const char *word, void *at);
 snow_status snow_read_numbers(snow_source *source, snow_type type, bool commas,
                               const snow_file_part *part, void *voxels);
 
+/* Numbers of a text between blanks and the letters `between`: how many there
+ * are, or -1 if something else is there, or more than `most`. */
+int snow_text_reals(const char *text, const char *between, double *out,
+                    int most);
+int snow_text_integers(const char *text, const char *between, int64_t *out,
+                       int most);
+
 #endif

@@ -18,7 +18,7 @@
 #ifndef SNOW_FORMATS_AMR_AMR_H
 #define SNOW_FORMATS_AMR_AMR_H
 
-#include "formats/format.h"
+#include "formats/ascii.h"
 
 #define AMR_MOST_LEVELS 24
 #define AMR_MOST_BOXES 4000000
@@ -72,10 +72,14 @@ snow_status snow_amr_read(const amr_grid *grid,
                           const snow_volume_options *options,
                           snow_volume_info *info, snow_volume **out);
 
-/* Reads up to `most` numbers between blanks, commas and parentheses; how many
- * there are, or -1 if something else is there, or more. */
-int snow_amr_numbers(const char *text, double *out, int most);
-int snow_amr_integers(const char *text, int64_t *out, int most);
+/* The numbers of "((0,0,0) (31,31,31) (0,0,0))", as in formats/ascii.h. */
+static inline int snow_amr_numbers(const char *text, double *out, int most) {
+    return snow_text_reals(text, ",()", out, most);
+}
+
+static inline int snow_amr_integers(const char *text, int64_t *out, int most) {
+    return snow_text_integers(text, ",()", out, most);
+}
 
 /* A line that is not what it should be; reads the next one, of up to `bytes`.
  * Errors: SNOW_STATUS_BAD_INPUT. */

@@ -10,6 +10,7 @@
  *
  * After VisIt's "Getting Data Into VisIt", chapter 3. */
 #include "formats/array.h"
+#include "formats/ascii.h"
 #include "formats/index/index.h"
 
 #include <ctype.h>
@@ -39,33 +40,20 @@ static bool is_key(const char *line, const char *key, const char **value) {
     return true;
 }
 
-/* Splits off the next word; returns false at the end. */
-static bool next_word(const char **at, char word[64]) {
-    *at += strspn(*at, " \t,");
-    size_t length = strcspn(*at, " \t,");
-    if (!length || length >= 64)
-        return false;
-    memcpy(word, *at, length);
-    word[length] = 0;
-    *at += length;
-    return true;
+/* The first three numbers of a line. */
+static bool take_reals(const char *value, double out[3]) {
+    double all[16];
+    const bool right = snow_text_reals(value, ",", all, 16) >= 3;
+    memcpy(out, all, right ? 3 * sizeof *out : 0);
+    return right;
 }
 
 static bool take_sizes(const char *value, int64_t out[3]) {
-    char word[64];
-    for (int i = 0; i < 3; i++)
-        if (!next_word(&value, word) || !snow_parse_int64(word, &out[i]) ||
-            out[i] < 1)
-            return false;
-    return true;
-}
-
-static bool take_reals(const char *value, double out[3]) {
-    char word[64];
-    for (int i = 0; i < 3; i++)
-        if (!next_word(&value, word) || !snow_parse_double(word, &out[i]))
-            return false;
-    return true;
+    int64_t all[16];
+    const bool right = snow_text_integers(value, ",", all, 16) >= 3 &&
+                       all[0] >= 1 && all[1] >= 1 && all[2] >= 1;
+    memcpy(out, all, right ? 3 * sizeof *out : 0);
+    return right;
 }
 
 static snow_type type_named(const char *value) {

@@ -1,4 +1,5 @@
 /* formats/index/xdmf_text.c - the elements of an XDMF file. */
+#include "formats/ascii.h"
 #include "formats/index/xdmf.h"
 
 #include <ctype.h>
@@ -20,20 +21,12 @@ static void copy_text(const char *from, char *to, size_t capacity) {
 /* Reads up to three sizes, the slowest first, into x, y, z. */
 static bool take_sizes(const char *text, int64_t out[3]) {
     int64_t sizes[3];
-    int count = 0;
-    while (text && *(text += strspn(text, " \t\r\n"))) {
-        char word[32];
-        size_t length = strcspn(text, " \t\r\n");
-        if (count == 3 || length >= sizeof word)
-            return false;
-        memcpy(word, text, length);
-        word[length] = 0;
-        if (!snow_parse_int64(word, &sizes[count++]) || sizes[count - 1] < 1)
-            return false;
-        text += length;
-    }
-    for (int i = 0; i < 3; i++)
+    const int count = text ? snow_text_integers(text, "", sizes, 3) : 0;
+    for (int i = 0; i < 3; i++) {
         out[i] = i < count ? sizes[count - 1 - i] : 1;
+        if (out[i] < 1)
+            return false;
+    }
     return count > 0;
 }
 

@@ -7,6 +7,7 @@
  * The array is selected by name; by default it is the one that the file calls
  * its scalars, otherwise the first; arrays of points have priority over those
  * of cells. */
+#include "formats/ascii.h"
 #include "formats/bytes/lz4.h"
 #include "formats/index/index.h"
 #include "formats/vtk/vti.h"
@@ -40,39 +41,19 @@ static snow_status fail_header(const vti_text *text, const char *reason) {
     return snow_fail(text->context, SNOW_STATUS_BAD_INPUT, "%s", reason);
 }
 
-/* Splits off the next word of a text of numbers; returns false at the end. */
-static bool next_word(const char **at, char word[64]) {
-    *at += strspn(*at, " \t\r\n");
-    size_t length = strcspn(*at, " \t\r\n");
-    if (!length || length >= 64)
-        return false;
-    memcpy(word, *at, length);
-    word[length] = 0;
-    *at += length;
-    return true;
-}
-
 /* Parses exactly `count` real numbers; a missing attribute leaves the numbers
  * unchanged. */
 static bool take_reals(const char *value, int count, double *out) {
-    char word[64];
-    if (!value)
-        return true;
-    for (int i = 0; i < count; i++)
-        if (!next_word(&value, word) || !snow_parse_double(word, &out[i]))
-            return false;
-    return !value[strspn(value, " \t\r\n")];
+    return !value || snow_text_reals(value, "", out, count) == count;
 }
 
 bool snow_vti_take_extent(const char *value, int64_t first[3],
                           int64_t points[3]) {
-    char word[64];
-    int64_t ends[6];
-    if (!value)
+    int64_t ends[16]; /* more than six are ignored */
+    if (!value || snow_text_integers(value, "", ends, 16) < 6)
         return false;
     for (int i = 0; i < 6; i++)
-        if (!next_word(&value, word) || !snow_parse_int64(word, &ends[i]) ||
-            ends[i] < -MOST_INDEX || ends[i] > MOST_INDEX)
+        if (ends[i] < -MOST_INDEX || ends[i] > MOST_INDEX)
             return false;
     for (int i = 0; i < 3; i++) {
         first[i] = ends[2 * i];
