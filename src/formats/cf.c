@@ -22,16 +22,9 @@ static void take_unit(const char *text, char unit[64]) {
     unit[length] = 0;
 }
 
-static bool is_same(const char *a, const char *b) {
-    for (; *a && *b; a++, b++)
-        if ((*a | 32) != (*b | 32))
-            return false;
-    return *a == *b;
-}
-
 static bool is_any_of(const char *text, const char *const *list) {
     for (; *list; list++)
-        if (is_same(text, *list))
+        if (snow_same_name(text, *list))
             return true;
     return false;
 }
@@ -51,14 +44,14 @@ snow_axis_hint snow_cf_hint(const char *name, const cf_attributes *says) {
     const char *standard = says ? says->standard_name : "";
     snow_axis_hint hint = {0};
     bool in_space = is_any_of(axis, spaces);
-    hint.time =
-        is_same(axis, "t") ||
-        (!in_space && (is_same(standard, "time") || strstr(units, " since ") ||
-                       is_same(name, "time")));
+    hint.time = snow_same_name(axis, "t") ||
+                (!in_space &&
+                 (snow_same_name(standard, "time") ||
+                  strstr(units, " since ") || snow_same_name(name, "time")));
     hint.components = !in_space && is_any_of(name, parts);
     hint.duration = !in_space && is_any_of(units, times);
-    hint.space =
-        in_space || is_any_of(name, lines) || (*units && !is_same(units, "1"));
+    hint.space = in_space || is_any_of(name, lines) ||
+                 (*units && !snow_same_name(units, "1"));
     return hint;
 }
 
@@ -86,7 +79,7 @@ static bool is_down(const cf_attributes *says) {
     static const char *const pressures[] = {
         "Pa",       "hPa",       "kPa",     "bar",  "mbar", "mb",
         "millibar", "millibars", "decibar", "dbar", "atm",  NULL};
-    return *says->positive ? is_same(says->positive, "down")
+    return *says->positive ? snow_same_name(says->positive, "down")
                            : is_any_of(says->units, pressures);
 }
 

@@ -164,12 +164,11 @@ static snow_status take_domain(reading *r, int level, const int64_t *ends) {
         const int64_t cells = high - low + 1;
         if (low < -INT32_MAX || high > (INT64_C(1) << 40) || cells < 1 ||
             (level && cells % below[i]))
-            return snow_fail(r->file.context, SNOW_STATUS_BAD_INPUT,
-                             "its level %d has a domain of %lld cells along "
-                             "%c, no multiple of the %lld of the level below; "
-                             "write it again",
-                             level, (long long)cells, "xyz"[i],
-                             (long long)below[i]);
+            return snow_fail(
+                r->file.context, SNOW_STATUS_BAD_INPUT,
+                "its level %d has a domain of %lld cells along %c, no multiple "
+                "of the %lld of the level below; write it again",
+                level, (long long)cells, "xyz"[i], (long long)below[i]);
         r->file.first[level][i] = low;
         grid->ratio[level][i] = level ? cells / below[i] : 1;
         if (!level)
@@ -188,10 +187,10 @@ static snow_status place_in_world(reading *r) {
                             ? (r->high[i] - r->low[i]) / (double)grid->cells[i]
                             : grid->size[0];
         if (!(grid->size[i] > 0) || !isfinite(grid->size[i]))
-            return snow_fail(r->file.context, SNOW_STATUS_BAD_INPUT,
-                             "its domain reaches from %g to %g along %c; "
-                             "correct its Header",
-                             r->low[i], r->high[i], "xyz"[i]);
+            return snow_fail(
+                r->file.context, SNOW_STATUS_BAD_INPUT,
+                "its domain reaches from %g to %g along %c; correct its Header",
+                r->low[i], r->high[i], "xyz"[i]);
     }
     return SNOW_STATUS_OK;
 }

@@ -125,8 +125,7 @@ static snow_status find_ratios(vth_file *f) {
             if (!f->grid.ratio[l][i])
                 return fail_vth(
                     f, number,
-                    "has cells that do not divide those of the level "
-                    "below");
+                    "has cells that do not divide those of the level below");
         }
     }
     return SNOW_STATUS_OK;

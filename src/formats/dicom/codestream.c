@@ -47,17 +47,11 @@ static bool next_segment(rest *r, segment *out) {
 static bool take_sizes(const segment *siz, j2k_stream *s) {
     if (siz->marker != 0xff51 || siz->size < 36)
         return false;
-    uint64_t values[8];
+    uint64_t *const values[] = {&s->x1,      &s->y1,        &s->x0,
+                                &s->y0,      &s->tile_wide, &s->tile_high,
+                                &s->tile_x0, &s->tile_y0};
     for (int i = 0; i < 8; i++)
-        values[i] = whole(siz->at + 2 + 4 * i, 4);
-    s->x1 = values[0];
-    s->y1 = values[1];
-    s->x0 = values[2];
-    s->y0 = values[3];
-    s->tile_wide = values[4];
-    s->tile_high = values[5];
-    s->tile_x0 = values[6];
-    s->tile_y0 = values[7];
+        *values[i] = whole(siz->at + 2 + 4 * i, 4);
     s->components = (uint32_t)whole(siz->at + 34, 2);
     if (!s->tile_wide || !s->tile_high || s->tile_x0 > s->x0 ||
         s->tile_y0 > s->y0 || s->x0 >= s->x1 || s->y0 >= s->y1)

@@ -155,10 +155,9 @@ snow_status snow_dicom_check_mosaic(snow_context *context,
             snow_dicom_name(frame), -image->tiles, -image->tiles,
             (long long)image->columns, (long long)image->rows);
     if (image->tiles > 1 && frame->placed && !image->has_normal)
-        snow_notify(context,
-                    "its mosaic does not say in which direction its slices "
-                    "follow (SliceNormalVector); row x column is taken, and "
-                    "they may be in the opposite order");
+        snow_notify(context, "its mosaic does not say in which direction its "
+                             "slices follow (SliceNormalVector); row x column "
+                             "is taken, and they may be in the opposite order");
     return SNOW_STATUS_OK;
 }
 

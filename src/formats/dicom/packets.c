@@ -17,6 +17,8 @@
  */
 #include "formats/dicom/packets.h"
 
+#include "base/minmax.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -125,12 +127,10 @@ static snow_status add_band(tile *t, precinct *p, int number, uint64_t px,
     const uint64_t sides[4] = {
         in_band(t->x0, bits, right), in_band(t->x1, bits, right),
         in_band(t->y0, bits, low), in_band(t->y1, bits, low)};
-    uint64_t x0 = px << wide, x1 = (px + 1) << wide;
-    uint64_t y0 = py << high, y1 = (py + 1) << high;
-    x0 = x0 > sides[0] ? x0 : sides[0];
-    x1 = x1 < sides[1] ? x1 : sides[1];
-    y0 = y0 > sides[2] ? y0 : sides[2];
-    y1 = y1 < sides[3] ? y1 : sides[3];
+    const uint64_t x0 = SNOW_MAX(px << wide, sides[0]);
+    const uint64_t x1 = SNOW_MIN((px + 1) << wide, sides[1]);
+    const uint64_t y0 = SNOW_MAX(py << high, sides[2]);
+    const uint64_t y1 = SNOW_MIN((py + 1) << high, sides[3]);
     packet_band *band = &p->band[p->bands++];
     band->wide = count_blocks(x0, x1, c->wide < wide ? c->wide : wide);
     band->high = count_blocks(y0, y1, c->high < high ? c->high : high);

@@ -304,11 +304,7 @@ static snow_status unpack(dicom_reader *reader, const dicom_image *image,
 static snow_status unpack(dicom_reader *reader, const dicom_image *image,
                           const unsigned char *bytes, size_t size, void *out,
                           dicom_words *words) {
-    (void)image;
-    (void)bytes;
-    (void)size;
-    (void)out;
-    (void)words;
+    (void)image, (void)bytes, (void)size, (void)out, (void)words;
     return snow_fail(
         reader->context, SNOW_STATUS_BAD_INPUT,
         "this build cannot read compressed DICOM images (transfer syntax "

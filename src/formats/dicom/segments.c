@@ -92,16 +92,15 @@ static snow_status check_image(snow_context *context,
     bool map = image->segments == DICOM_LABELMAP && image->allocated == 16;
     if (image->samples != 1 || (!bits && !map && image->allocated != 8) ||
         image->stored != image->allocated || image->high != image->stored - 1)
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "is a segmentation with %d values of %d bits per "
+                         "pixel, of which %d are stored: only one of 1 or 8 "
+                         "bits, or 16 of a label map, all stored, is supported",
+                         image->samples, image->allocated, image->stored);
+    if (image->whole < 1)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
-            "is a segmentation with %d values of %d bits per pixel, of which "
-            "%d are stored: only one of 1 or 8 bits, or 16 of a label map, all "
-            "stored, is supported",
-            image->samples, image->allocated, image->stored);
-    if (image->whole < 1)
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "claims that 0 is its largest fraction; it is "
-                         "damaged");
+            "claims that 0 is its largest fraction; it is damaged");
     return SNOW_STATUS_OK;
 }
 
@@ -117,12 +116,11 @@ static snow_status check_frames(snow_context *context,
             "groups need PlanePositionSequence and PlaneOrientationSequence");
     size_t count = stack->starts[stack->places];
     if ((int64_t)count != image->frames)
-        return snow_fail(
-            context, SNOW_STATUS_BAD_INPUT,
-            "is a segmentation of which only %zu of %lld frames have positions "
-            "on one grid; the others have none, or another direction or pixel "
-            "size",
-            count, (long long)image->frames);
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "is a segmentation of which only %zu of %lld frames "
+                         "have positions on one grid; the others have none, or "
+                         "another direction or pixel size",
+                         count, (long long)image->frames);
     for (size_t p = 0; p < stack->places; p++)
         for (size_t i = stack->starts[p]; i < stack->starts[p + 1]; i++) {
             const dicom_frame *frame = &stack->frames[i];

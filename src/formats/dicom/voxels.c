@@ -327,11 +327,11 @@ static snow_status warn_lost(snow_context *context, const dicom_stack *stack) {
         if (!frame->lost)
             continue;
         named++;
-        snow_notify(context,
-                    "%s is cut: its slice (frame %lld, at %g mm) is left "
-                    "transparent",
-                    snow_dicom_name(frame), (long long)frame->number,
-                    height(stack, frame));
+        snow_notify(
+            context,
+            "%s is cut: its slice (frame %lld, at %g mm) is left transparent",
+            snow_dicom_name(frame), (long long)frame->number,
+            height(stack, frame));
     }
     if (lost > named)
         snow_notify(context, "in all %zu slices are cut", lost);
@@ -360,10 +360,9 @@ static void warn_about_volume(snow_context *context, const dicom_stack *stack,
     if (no_frames)
         snow_notify(context, "claims 0 frames (NumberOfFrames); 1 is taken");
     if (unmapped)
-        snow_notify(context,
-                    "its table or map of values (ModalityLUTSequence, "
-                    "RealWorldValueMappingSequence) is not applied; the values "
-                    "are as stored");
+        snow_notify(context, "its table or map of values (ModalityLUTSequence, "
+                             "RealWorldValueMappingSequence) is not applied; "
+                             "the values are as stored");
     if (!first->measured && !spacing_given)
         snow_notify(context, "the size of a pixel is missing or invalid; 1 mm "
                              "is used, --spacing sets another");

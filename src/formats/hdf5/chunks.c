@@ -13,6 +13,7 @@
 
 #if SNOW_HAVE_HDF5
 
+#include "base/minmax.h"
 #include "base/thread_pool.h"
 #include "formats/hdf5/filters.h"
 
@@ -57,11 +58,9 @@ typedef struct box_job {
 /* Elements low .. high - 1 of an axis, which are in chunk and box. */
 static void overlap(const box_job *job, const hsize_t *chunk, int axis,
                     hsize_t *low, hsize_t *high) {
-    const hsize_t end = job->first[axis] + job->count[axis];
-    *low = chunk[axis] > job->first[axis] ? chunk[axis] : job->first[axis];
-    *high = chunk[axis] + job->chunk[axis];
-    if (*high > end)
-        *high = end;
+    *low = SNOW_MAX(chunk[axis], job->first[axis]);
+    *high = SNOW_MIN(chunk[axis] + job->chunk[axis],
+                     job->first[axis] + job->count[axis]);
 }
 
 /* Copies rows of the last axis from the chunk to the box; from NULL, the fill
@@ -142,8 +141,7 @@ static bool has_place(const box_job *job, const hsize_t *first) {
                0 &&
            place != HADDR_UNDEF;
 #else
-    (void)job;
-    (void)first;
+    (void)job, (void)first;
     return true;
 #endif
 }
@@ -199,8 +197,7 @@ static snow_status take_chunk(const box_job *job, chunk_slot *slot) {
     if (packed->fault)
         return fail_chunk(job, slot->first, packed->fault);
     if (job->converted) {
-        const size_t widest =
-            job->width > job->stored_width ? job->width : job->stored_width;
+        const size_t widest = SNOW_MAX(job->width, job->stored_width);
         SNOW_TRY(snow_reserve(job->context, &packed->bytes, packed->size,
                               job->elements * widest, 1));
         if (H5Tconvert(job->stored, job->type, (size_t)job->elements,

@@ -62,16 +62,14 @@ static snow_status check_storage(snow_context *context, hid_t set) {
         return snow_hdf5_fail(context, "its storage is not described");
     bool elsewhere =
         H5Pget_layout(plan) == H5D_VIRTUAL || H5Pget_external_count(plan) > 0;
-    int filters = H5Pget_nfilters(plan), missing = 0;
-    for (int i = 0; i < filters && !missing; i++) {
-        unsigned flags, config;
-        size_t count = 0;
-        H5Z_filter_t filter = H5Pget_filter2(plan, (unsigned)i, &flags, &count,
-                                             NULL, 0, NULL, &config);
-        if (filter > 0 && !snow_hdf5_undoes(filter) &&
-            H5Zfilter_avail(filter) <= 0)
-            missing = filter;
-    }
+    hdf5_filters filters;
+    int missing = 0;
+    if (snow_hdf5_read_filters(plan, &filters))
+        for (int i = 0; i < filters.count && !missing; i++) {
+            const int id = filters.all[i].id;
+            if (!snow_hdf5_undoes(id) && H5Zfilter_avail(id) <= 0)
+                missing = id;
+        }
     H5Pclose(plan);
     if (elsewhere)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
@@ -297,9 +295,7 @@ static snow_status read_hdf5(snow_source *source,
 static snow_status read_hdf5(snow_source *source,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
-    (void)options;
-    (void)info;
-    (void)out;
+    (void)options, (void)info, (void)out;
     return snow_fail_unbuilt(snow_source_context(source), "HDF5",
                              "libhdf5-dev");
 }

@@ -5,6 +5,7 @@
  *     |  c  |  d  |      voxels, the later one is taken
  *
  * Voxels in none of them are NaN, or 0 of integers. */
+#include "base/minmax.h"
 #include "formats/index/index.h"
 
 #include <math.h>
@@ -111,10 +112,8 @@ static snow_status measure(mosaic *m, snow_volume_info *info) {
     for (size_t n = 0; n < m->from->count; n++) {
         const part *p = &m->parts[n];
         for (int i = 0; i < 3; i++) {
-            if (p->first[i] < m->first[i])
-                m->first[i] = p->first[i];
-            if (p->first[i] + p->dims[i] > end[i])
-                end[i] = p->first[i] + p->dims[i];
+            m->first[i] = SNOW_MIN(m->first[i], p->first[i]);
+            end[i] = SNOW_MAX(end[i], p->first[i] + p->dims[i]);
         }
         voxels += (double)p->dims[0] * (double)p->dims[1] * (double)p->dims[2];
     }
@@ -144,10 +143,8 @@ void snow_mosaic_copy(const snow_volume *from, const int64_t at[3],
     const size_t size = snow_type_size(to->info.type);
     int64_t low[3], high[3]; /* in `to` */
     for (int i = 0; i < 3; i++) {
-        low[i] = at[i] > first[i] ? at[i] - first[i] : 0;
-        high[i] = at[i] + wide[i] - first[i];
-        if (high[i] > dims[i])
-            high[i] = dims[i];
+        low[i] = SNOW_MAX(at[i] - first[i], 0);
+        high[i] = SNOW_MIN(at[i] + wide[i] - first[i], dims[i]);
         if (low[i] >= high[i])
             return;
     }

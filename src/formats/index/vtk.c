@@ -25,10 +25,9 @@ static snow_status begin_element(void *user, const char *name,
         const char *step = snow_index_attribute(attributes, "timestep");
         file = snow_index_attribute(attributes, "file");
         if (step && !snow_parse_double(step, &time))
-            return snow_fail(index->list.context, SNOW_STATUS_BAD_INPUT,
-                             "its timestep \"%.60s\" is not a number; correct "
-                             "it",
-                             step);
+            return snow_fail(
+                index->list.context, SNOW_STATUS_BAD_INPUT,
+                "its timestep \"%.60s\" is not a number; correct it", step);
     }
     if (!strcmp(name, "Piece"))
         file = snow_index_attribute(attributes, "Source");

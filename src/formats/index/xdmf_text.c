@@ -114,10 +114,9 @@ static snow_status begin_item(xdmf_file *f, const char **attributes) {
     if (bytes)
         (void)snow_parse_int64(bytes, &size);
     if (seek && (!snow_parse_int64(seek, &f->item.seek) || f->item.seek < 0))
-        return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
-                         "its Seek \"%.40s\" is not a number of bytes; correct "
-                         "it",
-                         seek);
+        return snow_fail(
+            f->context, SNOW_STATUS_BAD_INPUT,
+            "its Seek \"%.40s\" is not a number of bytes; correct it", seek);
     f->item.type = type_of(
         number ? number : snow_index_attribute(attributes, "DataType"), size);
     f->item.numbers = f->used;

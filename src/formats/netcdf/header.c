@@ -79,9 +79,8 @@ static void take_name(cursor *c, char name[NETCDF_NAME_BYTES]) {
     int64_t length = take_count(c);
     *name = 0;
     if (length >= NETCDF_NAME_BYTES) {
-        fail_header(c,
-                    "its NetCDF header has a name of more than 256 letters; it "
-                    "is damaged");
+        fail_header(c, "its NetCDF header has a name of more than 256 letters; "
+                       "it is damaged");
         return;
     }
     uint64_t begin = c->at;
@@ -100,9 +99,8 @@ static int64_t take_list(cursor *c, unsigned tag, uint64_t least) {
     if (c->status == SNOW_STATUS_OK && found != tag && (found || count))
         fail_header(c, "its NetCDF header is invalid; it is damaged");
     if (c->status == SNOW_STATUS_OK && (uint64_t)count > size / least)
-        fail_header(
-            c, "its NetCDF header lists more than the file can hold; it is "
-               "damaged");
+        fail_header(c, "its NetCDF header lists more than the file can hold; "
+                       "it is damaged");
     return c->status == SNOW_STATUS_OK ? count : 0;
 }
 
@@ -232,9 +230,8 @@ static void take_axes(cursor *c, const netcdf_header *header,
     for (int64_t i = 0; i < v->axes && c->status == SNOW_STATUS_OK; i++) {
         int64_t index = take_count(c);
         if (c->status == SNOW_STATUS_OK && index >= header->dimension_count)
-            fail_header(c,
-                        "a variable has a dimension that does not exist; the "
-                        "file is damaged");
+            fail_header(c, "a variable has a dimension that does not exist; "
+                           "the file is damaged");
         if (c->status != SNOW_STATUS_OK)
             return;
         const netcdf_dimension *d = &header->dimensions[index];
@@ -243,9 +240,8 @@ static void take_axes(cursor *c, const netcdf_header *header,
         if (d->records && i == 0)
             v->records = true;
         else if (d->records)
-            fail_header(
-                c, "a variable has the records not as its first dimension; "
-                   "the file is damaged");
+            fail_header(c, "a variable has the records not as its first "
+                           "dimension; the file is damaged");
         else if (!snow_mul_u64(v->bytes, (uint64_t)d->size, &v->bytes) ||
                  v->bytes > (uint64_t)INT64_MAX / 8)
             fail_header(c,
@@ -322,9 +318,8 @@ snow_status snow_netcdf_read_header(snow_context *context, snow_seekable *bytes,
     out->version = magic[3];
     if (memcmp(magic, "CDF", 3) != 0 ||
         (out->version != 1 && out->version != 2 && out->version != 5))
-        fail_header(&c,
-                    "is not a NetCDF file of version 1, 2 or 5, although its "
-                    "name says so; get it again");
+        fail_header(&c, "is not a NetCDF file of version 1, 2 or 5, although "
+                        "its name says so; get it again");
     if (out->version == 5)
         c.wide = 8;
     uint64_t records = take_number(&c, c.wide);

@@ -20,9 +20,8 @@ const char *snow_vtk_other(const char *type) {
         {"PStructuredGrid",
          "is a VTK file that names the pieces of a structured grid, whose "
          "points may lie anywhere; resample it to image data (.vti) first"},
-        {"UnstructuredGrid",
-         "is a VTK file of an unstructured grid; resample it to image data "
-         "(.vti) first"},
+        {"UnstructuredGrid", "is a VTK file of an unstructured grid; resample "
+                             "it to image data (.vti) first"},
         {"PUnstructuredGrid",
          "is a VTK file that names the pieces of an unstructured grid; "
          "resample it to image data (.vti) first"},

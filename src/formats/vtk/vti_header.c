@@ -90,10 +90,9 @@ static snow_status begin_file(vti_text *text, const char **attributes) {
         return snow_lz4_need(text->context);
     if (text->header->packed &&
         strcmp(compressor, "vtkZLibDataCompressor") != 0)
-        return fail_header(text,
-                           "its data are compressed neither by zlib nor LZ4; "
-                           "write it again with vtkZLibDataCompressor or "
-                           "without compression");
+        return fail_header(
+            text, "its data are compressed neither by zlib nor LZ4; write it "
+                  "again with vtkZLibDataCompressor or without compression");
     return SNOW_STATUS_OK;
 }
 
@@ -110,8 +109,8 @@ static snow_status begin_grid(vti_text *text, const char **attributes) {
         !take_reals(snow_index_attribute(attributes, "Direction"), 9,
                     direction))
         return fail_header(
-            text, "its WholeExtent, Origin, Spacing or Direction is empty "
-                  "or not a row of numbers; write the file again");
+            text, "its WholeExtent, Origin, Spacing or Direction is empty or "
+                  "not a row of numbers; write the file again");
     for (int i = 0; i < 9; i++)
         grid->direction[i / 3][i % 3] = direction[i];
     return SNOW_STATUS_OK;
@@ -123,10 +122,10 @@ static snow_status fail_unfound(const vti_text *text) {
         return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
                          "has no array of values; write one with the image");
     if (text->options->dataset)
-        return snow_fail(text->context, SNOW_STATUS_BAD_USAGE,
-                         "--dataset %.100s: there is no such array; the file "
-                         "has %s",
-                         text->options->dataset, text->seen);
+        return snow_fail(
+            text->context, SNOW_STATUS_BAD_USAGE,
+            "--dataset %.100s: there is no such array; the file has %s",
+            text->options->dataset, text->seen);
     return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
                      "lacks the array that it calls its scalars; choose one "
                      "with --dataset: %s",
@@ -154,9 +153,8 @@ static snow_status begin_piece(vti_text *text, const char **attributes) {
                memcmp(points, grid->points, sizeof points) != 0) {
         header->in_pieces = text->xml.done = text->grid && !grid->rectilinear;
         if (!header->in_pieces)
-            return fail_header(
-                text, "has no piece that spans the WholeExtent; write the "
-                      "whole grid to one file");
+            return fail_header(text, "has no piece that spans the WholeExtent; "
+                                     "write the whole grid to one file");
     }
     return SNOW_STATUS_OK;
 }
@@ -229,9 +227,10 @@ static snow_status begin_array(vti_text *text, const char **attributes) {
     if (!snow_vti_keep_array(text->header, attributes, name, text->cells))
         return choice != WANTED
                    ? SNOW_STATUS_OK
-                   : fail_header(text, "its array has an unknown type, format, "
-                                       "offset or number of components; choose "
-                                       "another with --dataset");
+                   : fail_header(
+                         text,
+                         "its array has an unknown type, format, offset or "
+                         "number of components; choose another with --dataset");
     /* Data in the element can be read only now, although better arrays may
      * follow. */
     const bool here = text->header->form != VTI_APPENDED;
@@ -245,9 +244,8 @@ static snow_status begin_appended(vti_text *text, const char **attributes) {
     const char *encoding = snow_index_attribute(attributes, "encoding");
     text->header->raw = encoding && !strcmp(encoding, "raw");
     if (!text->header->raw && (!encoding || strcmp(encoding, "base64") != 0))
-        return fail_header(text,
-                           "its appended data are neither raw nor base64; "
-                           "write the file again");
+        return fail_header(text, "its appended data are neither raw nor "
+                                 "base64; write the file again");
     text->xml.done = text->choice;
     return SNOW_STATUS_OK;
 }

@@ -51,16 +51,15 @@ static snow_status take_piece(vti_pieces *p, const char **attributes) {
         if (first[i] < grid->first[i] ||
             first[i] + points[i] > grid->first[i] + grid->points[i])
             return fail_pieces(
-                p, "has a piece outside of the WholeExtent; write the "
-                   "file again");
+                p,
+                "has a piece outside of the WholeExtent; write the file again");
         all *= (double)points[i];
         whole *= (double)grid->points[i];
     }
     p->points += all;
     if (p->count == MOST_PIECES || p->points > MOST_SHARED * whole)
-        return fail_pieces(p,
-                           "has more than 4096 pieces, or pieces that overlap; "
-                           "write the whole image to one file");
+        return fail_pieces(p, "has more than 4096 pieces, or pieces that "
+                              "overlap; write the whole image to one file");
     p->places[p->count++] = p->xml.at;
     return SNOW_STATUS_OK;
 }

@@ -21,7 +21,6 @@
 #include "formats/ascii.h"
 #include "io/filters/filters.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -73,16 +72,8 @@ static snow_status next_line(vtk_reader *reader) {
 }
 
 /* Keywords may have capital or small letters. */
-static bool is_word(const char *word, const char *keyword) {
-    while (*word && toupper((unsigned char)*word) == *keyword) {
-        word++;
-        keyword++;
-    }
-    return !*word && !*keyword;
-}
-
 static bool starts(const vtk_reader *reader, const char *keyword, int words) {
-    return reader->count >= words && is_word(reader->words[0], keyword);
+    return reader->count >= words && snow_same_name(reader->words[0], keyword);
 }
 
 static snow_status fail_line(const vtk_reader *reader) {
@@ -116,7 +107,7 @@ static snow_type type_named(const char *name) {
         {"DOUBLE", SNOW_TYPE_FLOAT64},
     };
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-        if (is_word(name, types[i].name))
+        if (snow_same_name(name, types[i].name))
             return types[i].type;
     return SNOW_TYPE_NONE;
 }
@@ -259,8 +250,8 @@ static snow_status take_time(vtk_reader *reader, int64_t count, bool *known) {
                            type_named(reader->words[3])};
     double *value;
     *known = !reader->placed && count == 1 &&
-             (is_word(reader->words[0], "TIME") ||
-              is_word(reader->words[0], "TIMEVALUE"));
+             (snow_same_name(reader->words[0], "TIME") ||
+              snow_same_name(reader->words[0], "TIMEVALUE"));
     if (!*known)
         return SNOW_STATUS_OK;
     SNOW_TRY(snow_vtk_read_line(reader->source, &line, &value));
@@ -331,13 +322,13 @@ static snow_status take_attribute(vtk_reader *reader, bool *known) {
     if (starts(reader, "FIELD", 3))
         return take_field(reader);
     *known = reader->count >= 3 && snow_parse_int64(reader->words[2], &number);
-    reader->shares =
-        *known && !reader->binary && is_word(reader->words[0], "COLOR_SCALARS");
-    if (*known && is_word(reader->words[0], "COLOR_SCALARS"))
+    reader->shares = *known && !reader->binary &&
+                     snow_same_name(reader->words[0], "COLOR_SCALARS");
+    if (*known && snow_same_name(reader->words[0], "COLOR_SCALARS"))
         return take_array(reader, reader->words[1],
                           reader->binary ? SNOW_TYPE_UINT8 : SNOW_TYPE_FLOAT32,
                           number, reader->tuples);
-    if (*known && is_word(reader->words[0], "LOOKUP_TABLE"))
+    if (*known && snow_same_name(reader->words[0], "LOOKUP_TABLE"))
         return skip_array(reader,
                           reader->binary ? SNOW_TYPE_UINT8 : SNOW_TYPE_FLOAT32,
                           4, number);
@@ -446,9 +437,10 @@ static snow_status take_head(vtk_reader *reader) {
     SNOW_TRY(next_line(reader));
     if (!starts(reader, "DATASET", 2))
         return fail_line(reader);
-    reader->grid.rectilinear = is_word(reader->words[1], "RECTILINEAR_GRID");
+    reader->grid.rectilinear =
+        snow_same_name(reader->words[1], "RECTILINEAR_GRID");
     if (reader->grid.rectilinear ||
-        is_word(reader->words[1], "STRUCTURED_POINTS"))
+        snow_same_name(reader->words[1], "STRUCTURED_POINTS"))
         return SNOW_STATUS_OK;
     return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
                      "is a VTK file of \"%.60s\"; only structured points and "

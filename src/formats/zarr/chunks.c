@@ -8,6 +8,7 @@
  * The index of a shard gives the position and the size of each chunk, eight
  * bytes each, all ones for a chunk that is not stored.  Memory is needed for
  * the volume, one compressed chunk and one decompressed chunk. */
+#include "base/minmax.h"
 #include "formats/bytes/number.h"
 #include "formats/zarr/zarr.h"
 
@@ -154,18 +155,6 @@ snow_status snow_zarr_check_box(zarr_box *box, uint64_t bytes) {
 
 /* --- voxels --------------------------------------------------------------- */
 
-/* Entries low .. high - 1 of an axis that are in both the chunk and the box. */
-static void overlap(const filler *f, const int64_t *chunk, int axis,
-                    int64_t *low, int64_t *high) {
-    int64_t size = f->box->array->chunk[axis];
-    *low = chunk[axis] * size;
-    *high = *low + size;
-    if (*low < f->box->first[axis])
-        *low = f->box->first[axis];
-    if (*high > f->box->end[axis])
-        *high = f->box->end[axis];
-}
-
 /* A part of a chunk and its destination; values are in the machine's order.
  * Along x, y and z: the count, and the strides in the chunk and in the
  * volume. */
@@ -181,9 +170,10 @@ static void find_patch(const filler *f, const int64_t *chunk, patch *out) {
     const zarr_array *array = f->box->array;
     *out = (patch){0, f->voxels, {1, 1, 1}, {0, 0, 0}, {0, 0, 0}};
     for (int i = 0; i < array->axes; i++) {
-        int64_t low, high;
-        overlap(f, chunk, i, &low, &high);
-        out->from += (uint64_t)(low - chunk[i] * array->chunk[i]) * f->step[i];
+        const int64_t size = array->chunk[i], begin = chunk[i] * size;
+        const int64_t low = SNOW_MAX(begin, f->box->first[i]);
+        const int64_t high = SNOW_MIN(begin + size, f->box->end[i]);
+        out->from += (uint64_t)(low - begin) * f->step[i];
         out->to += (uint64_t)(low - f->box->first[i]) * f->place[i];
         for (int role = 0; role < 3; role++)
             if (f->box->roles.space[role] == i) {
@@ -194,31 +184,25 @@ static void find_patch(const filler *f, const int64_t *chunk, patch *out) {
     }
 }
 
-static void put_chunk(const filler *f, const int64_t *chunk) {
+/* Of a chunk that is not stored all values are the fill value. */
+static void put_chunk(const filler *f, const int64_t *chunk, bool stored) {
     const zarr_array *array = f->box->array;
-    patch p;
-    find_patch(f, chunk, &p);
-    for (int64_t z = 0; z < p.count[2]; z++)
-        for (int64_t y = 0; y < p.count[1]; y++)
-            snow_coding_put(
-                array->values, snow_machine_big_endian(), array->width,
-                f->values + p.from + (uint64_t)z * p.step[2] +
-                    (uint64_t)y * p.step[1],
-                p.step[0],
-                p.to + (uint64_t)z * p.place[2] + (uint64_t)y * p.place[1],
-                snow_type_size(array->type), (uint64_t)p.count[0]);
-}
-
-static void fill_chunk(const filler *f, const int64_t *chunk) {
-    size_t width = snow_type_size(f->box->array->type);
+    const size_t wide = snow_type_size(array->type);
     patch p;
     find_patch(f, chunk, &p);
     for (int64_t z = 0; z < p.count[2]; z++)
         for (int64_t y = 0; y < p.count[1]; y++) {
             unsigned char *to =
                 p.to + (uint64_t)z * p.place[2] + (uint64_t)y * p.place[1];
-            for (int64_t x = 0; x < p.count[0]; x++)
-                memcpy(to + (size_t)x * width, f->box->array->fill, width);
+            if (stored)
+                snow_coding_put(array->values, snow_machine_big_endian(),
+                                array->width,
+                                f->values + p.from + (uint64_t)z * p.step[2] +
+                                    (uint64_t)y * p.step[1],
+                                p.step[0], to, wide, (uint64_t)p.count[0]);
+            else
+                snow_coding_put(SNOW_CODING_PLAIN, false, wide, array->fill, 0,
+                                to, wide, (uint64_t)p.count[0]);
         }
 }
 
@@ -238,7 +222,7 @@ static snow_status read_chunk(filler *f, const zarr_file *file, uint64_t first,
                               (size_t)size, f->values, f->bytes));
     if (array->big_endian != snow_machine_big_endian())
         snow_swap_bytes(f->values, f->bytes / array->width, array->width);
-    put_chunk(f, chunk);
+    put_chunk(f, chunk, true);
     return SNOW_STATUS_OK;
 }
 
@@ -296,7 +280,7 @@ static snow_status take_chunk(filler *f, const zarr_file *file,
     if (is_there)
         return read_chunk(f, file, first, size, chunk);
     f->missing++;
-    fill_chunk(f, chunk);
+    put_chunk(f, chunk, false);
     return SNOW_STATUS_OK;
 }
 
@@ -308,10 +292,10 @@ static snow_status take_file(filler *f, const int64_t *at,
     if (file->is_there && array->sharded)
         SNOW_TRY(read_index(f, file));
     for (int i = 0; i < array->axes; i++) {
-        int64_t low = at[i] * array->file[i], high = low + array->file[i];
-        low = low < f->box->first[i] ? f->box->first[i] : low;
-        high = high > f->box->end[i] ? f->box->end[i] : high;
-        set_cells(&chunks, i, array->chunk[i], low, high);
+        const int64_t begin = at[i] * array->file[i];
+        set_cells(&chunks, i, array->chunk[i],
+                  SNOW_MAX(begin, f->box->first[i]),
+                  SNOW_MIN(begin + array->file[i], f->box->end[i]));
     }
     do {
         SNOW_TRY(take_chunk(f, file, chunks.at));

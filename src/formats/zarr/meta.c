@@ -29,15 +29,14 @@ static snow_status take_shape(const json_t *list, zarr_array *array) {
     size_t axes = json_array_size(list);
     if (axes < 1 || axes > ZARR_MOST_AXES)
         return ZARR_FAIL(array,
-                         "has %zu axes, but only 1 to %d are supported; "
-                         "choose another array with --dataset",
+                         "has %zu axes, but only 1 to %d are supported; choose "
+                         "another array with --dataset",
                          axes, ZARR_MOST_AXES);
     array->axes = (int)axes;
     if (!take_sizes(list, array->axes, array->sizes))
-        return ZARR_FAIL(array,
-                         "has an axis without a whole size of at least 1: "
-                         "it is empty or damaged; choose another array "
-                         "with --dataset");
+        return ZARR_FAIL(
+            array, "has an axis without a whole size of at least 1: it is "
+                   "empty or damaged; choose another array with --dataset");
     return SNOW_STATUS_OK;
 }
 
@@ -47,8 +46,8 @@ static snow_status check_bytes(const zarr_array *array) {
     for (int i = 0; i < array->axes; i++)
         if (array->file[i] % array->chunk[i])
             return ZARR_FAIL(array,
-                             "has chunks of %lld in shards of %lld, which "
-                             "are not a multiple; correct zarr.json",
+                             "has chunks of %lld in shards of %lld, which are "
+                             "not a multiple; correct zarr.json",
                              (long long)array->chunk[i],
                              (long long)array->file[i]);
     if (snow_array_steps(array->sizes, array->axes, 8, steps, &all) &&
@@ -77,11 +76,10 @@ static snow_status take_type(char kind, size_t width, const char *given,
                                                 : SNOW_CODING_PLAIN;
     if (array->type)
         return SNOW_STATUS_OK;
-    return ZARR_FAIL(
-        array,
-        "has the unsupported type \"%.40s\"; convert the values to one of "
-        "bool, int8 to uint64, float16 to float64",
-        given ? given : "(several in one)");
+    return ZARR_FAIL(array,
+                     "has the unsupported type \"%.40s\"; convert the values "
+                     "to one of bool, int8 to uint64, float16 to float64",
+                     given ? given : "(several in one)");
 }
 
 /* --- version 2 ------------------------------------------------------------ */
@@ -91,8 +89,9 @@ static snow_status take_coders_2(const json_t *meta, zarr_array *array) {
     const json_t *filters = json_object_get(meta, "filters");
     const json_t *packer = json_object_get(meta, "compressor");
     if (filters && !json_is_array(filters) && !json_is_null(filters))
-        return ZARR_FAIL(array, "has filters that are neither a list nor null; "
-                                "correct .zarray");
+        return ZARR_FAIL(
+            array,
+            "has filters that are neither a list nor null; correct .zarray");
     for (size_t i = 0; i <= json_array_size(filters); i++) {
         bool last = i == json_array_size(filters);
         const json_t *coder = last ? packer : json_array_get(filters, i);
@@ -122,8 +121,9 @@ static snow_status take_separator(const json_t *given, char usual,
     array->separator = text ? *text : usual;
     if (!given || (text && (!strcmp(text, ".") || !strcmp(text, "/"))))
         return SNOW_STATUS_OK;
-    return ZARR_FAIL(array, "has a chunk separator that is neither \".\" nor "
-                            "\"/\"; correct it");
+    return ZARR_FAIL(
+        array,
+        "has a chunk separator that is neither \".\" nor \"/\"; correct it");
 }
 
 static snow_status describe_2(const json_t *meta, zarr_array *array) {
@@ -185,8 +185,8 @@ static snow_status take_keys(const json_t *meta, zarr_array *array) {
     array->prefixed = !strcmp(name, "default");
     if (!array->prefixed && strcmp(name, "v2") != 0)
         return ZARR_FAIL(array,
-                         "uses the unknown chunk key encoding \"%.40s\"; "
-                         "copy the array with \"default\"",
+                         "uses the unknown chunk key encoding \"%.40s\"; copy "
+                         "the array with \"default\"",
                          name);
     const json_t *given =
         json_object_get(json_object_get(keys, "configuration"), "separator");
@@ -207,9 +207,8 @@ static snow_status take_transposition(const json_t *given, zarr_array *array) {
         order[i] = (int)number;
     }
     if (seen + 1 != 1U << array->axes)
-        return ZARR_FAIL(array,
-                         "has a transpose codec that is not a permutation "
-                         "of its axes; correct zarr.json");
+        return ZARR_FAIL(array, "has a transpose codec that is not a "
+                                "permutation of its axes; correct zarr.json");
     for (int i = 0; i < array->axes; i++)
         order[i] = array->order[order[i]];
     memcpy(array->order, order, sizeof order);
@@ -271,20 +270,20 @@ static snow_status take_codecs(const json_t *list, bool inner,
             SNOW_TRY(snow_zarr_add_coder(name, given, array));
         }
     }
-    return has_bytes ? SNOW_STATUS_OK
-                     : ZARR_FAIL(array, "has no codec \"bytes\"; correct "
-                                        "zarr.json");
+    return has_bytes
+               ? SNOW_STATUS_OK
+               : ZARR_FAIL(array, "has no codec \"bytes\"; correct zarr.json");
 }
 
 static snow_status describe_3(const json_t *meta, zarr_array *array) {
     const json_t *grid = json_object_get(meta, "chunk_grid");
     const json_t *changed = json_object_get(meta, "storage_transformers");
     if (changed && !(json_is_array(changed) && !json_array_size(changed)))
-        return ZARR_FAIL(array,
-                         "is stored through the transformer \"%.40s\", "
-                         "which is not supported; copy the array without "
-                         "storage_transformers",
-                         name_of(json_array_get(changed, 0)));
+        return ZARR_FAIL(
+            array,
+            "is stored through the transformer \"%.40s\", which is not "
+            "supported; copy the array without storage_transformers",
+            name_of(json_array_get(changed, 0)));
     SNOW_TRY(take_shape(json_object_get(meta, "shape"), array));
     const json_t *chunks =
         json_object_get(json_object_get(grid, "configuration"), "chunk_shape");
