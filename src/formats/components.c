@@ -230,11 +230,8 @@ static snow_status begin_lengths(snow_context *context, snow_volume **volume) {
     snow_volume *first = *volume, *made = first;
     snow_volume_info info = first->info;
     describe(&info);
-    if (info.type != first->info.type) {
-        snow_status status = snow_volume_new(context, &info, &made);
-        if (status != SNOW_STATUS_OK)
-            return status;
-    }
+    if (info.type != first->info.type)
+        SNOW_TRY(snow_volume_new(context, &info, &made));
     add_component(first, true, made);
     made->info = info;
     if (made != first)
@@ -312,13 +309,7 @@ snow_status snow_components_read(snow_context *context, snow_component_fn *read,
                                 &volume);
         describe(info);
     }
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    if (out) {
+    if (status == SNOW_STATUS_OK && volume)
         volume->info = *info;
-        *out = volume;
-    }
-    return SNOW_STATUS_OK;
+    return snow_volume_give(status, volume, out);
 }

@@ -65,6 +65,18 @@ static snow_status finish_info(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
+/* The same at the end of a reading, which gives the volume. */
+static snow_status finish(snow_context *context, snow_status status,
+                          const snow_volume_options *options,
+                          snow_volume_info *info, snow_volume *volume,
+                          snow_volume **out) {
+    if (status == SNOW_STATUS_OK)
+        status = finish_info(context, options, info);
+    if (status == SNOW_STATUS_OK && volume)
+        volume->info = *info;
+    return snow_volume_give(status, volume, out);
+}
+
 /* For a format that cannot stop after the header, or in the middle. */
 static snow_status read_whole(const snow_format *format, snow_source *source,
                               const snow_volume_options *options,
@@ -74,11 +86,7 @@ static snow_status read_whole(const snow_format *format, snow_source *source,
     snow_status status = snow_volume_crop(options, &volume);
     if (status == SNOW_STATUS_OK)
         *info = volume->info;
-    if (status == SNOW_STATUS_OK && out)
-        *out = volume;
-    else
-        snow_volume_close(volume);
-    return status;
+    return snow_volume_give(status, volume, out);
 }
 
 /* An option that a format ignores must not seem to work. */
@@ -133,16 +141,7 @@ static snow_status read_with(const snow_format *format, snow_source *source,
         format->crops
             ? format->read(source, options, info, out ? &volume : NULL)
             : read_whole(format, source, options, info, out ? &volume : NULL));
-    snow_status status = finish_info(context, options, info);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    if (out) {
-        volume->info = *info;
-        *out = volume;
-    }
-    return SNOW_STATUS_OK;
+    return finish(context, SNOW_STATUS_OK, options, info, volume, out);
 }
 
 /* An empty file has its own message: each format would miss something else.  A
@@ -216,16 +215,8 @@ static snow_status open_phantom(snow_context *context, const char *name,
     snow_volume_info given;
     SNOW_TRY(snow_phantom_make(context, name, options, 0, &given,
                                out ? &volume : NULL));
-    snow_status status = finish_info(context, options, &given);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
+    SNOW_TRY(finish(context, SNOW_STATUS_OK, options, &given, volume, out));
     *info = given;
-    if (out) {
-        volume->info = given;
-        *out = volume;
-    }
     return SNOW_STATUS_OK;
 }
 
@@ -258,17 +249,10 @@ static snow_status open_stack(snow_context *context, const char *path,
     if (status == SNOW_STATUS_OK)
         status =
             read_folder(context, path, options, &given, out ? &volume : NULL);
-    if (status == SNOW_STATUS_OK)
-        status = finish_info(context, options, &given);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
+    status = finish(context, status, options, &given, volume, out);
+    if (status != SNOW_STATUS_OK)
         return name_failure(context, status, path);
-    }
     *info = given;
-    if (out) {
-        volume->info = given;
-        *out = volume;
-    }
     return SNOW_STATUS_OK;
 }
 

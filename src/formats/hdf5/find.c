@@ -165,15 +165,11 @@ snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
                          "--dataset: the path is longer than any in a file");
     hid_t id = H5Dopen2(file, asked, H5P_DEFAULT);
     if (id < 0) {
-        if (find_only(context, file, &s) == SNOW_STATUS_OK || *s.list)
-            return snow_fail(
-                context, SNOW_STATUS_BAD_USAGE,
-                "--dataset %.200s: there is no such data set; the file has %s",
-                asked, s.list);
+        (void)find_only(context, file, &s);
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "--dataset %.200s: there is no such data set; "
-                         "check the path",
-                         asked);
+                         "--dataset %.200s: there is no such data set; %s%s",
+                         asked, *s.list ? "the file has " : "check the path",
+                         s.list);
     }
     if (!snow_hdf5_describe(id, out)) {
         H5Dclose(id);

@@ -108,14 +108,6 @@ cf_values snow_hdf5_values(snow_context *context, const hdf5_file *file,
                    : snow_cf_values_default(set->type);
 }
 
-/* Reads the first of some attributes that is there. */
-static void read_any(const hdf5_file *file, hid_t object,
-                     const char *const *names, char *out, size_t capacity) {
-    *out = 0;
-    for (; *names && !*out; names++)
-        snow_hdf5_text(file, object, *names, 0, out, capacity);
-}
-
 hid_t snow_hdf5_above(const hdf5_file *file, const hdf5_set *set, int levels) {
     char path[HDF5_NAME_BYTES];
     memcpy(path, set->path, sizeof path);
@@ -167,7 +159,6 @@ static void take_si(const hdf5_file *file, const hdf5_set *set,
 /* The time of the nearest group above that has one. */
 static void take_time(const hdf5_file *file, const hdf5_set *set,
                       snow_volume_info *info) {
-    static const char *const units[] = {"time_units", "time_unit", NULL};
     for (int level = 0; level < 6 && isnan(info->time_value); level++) {
         double time, factor;
         hid_t group = snow_hdf5_above(file, set, level);
@@ -176,8 +167,10 @@ static void take_time(const hdf5_file *file, const hdf5_set *set,
         if (snow_hdf5_numbers(group, "time", 1, &time) == 1 ||
             snow_hdf5_numbers(group, "Time", 1, &time) == 1) {
             info->time_value = time;
-            read_any(file, group, units, info->time_unit,
-                     sizeof info->time_unit);
+            if (!snow_hdf5_text(file, group, "time_units", 0, info->time_unit,
+                                sizeof info->time_unit))
+                snow_hdf5_text(file, group, "time_unit", 0, info->time_unit,
+                               sizeof info->time_unit);
             if (snow_hdf5_numbers(group, "timeUnitSI", 1, &factor) == 1) {
                 info->time_value = time * factor;
                 memcpy(info->time_unit, "s", 2);

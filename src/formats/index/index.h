@@ -15,6 +15,7 @@
 #define SNOW_FORMATS_INDEX_INDEX_H
 
 #include "formats/format.h"
+#include "io/seekable.h"
 
 /* A file of the list. */
 typedef struct index_entry {
@@ -105,6 +106,13 @@ typedef struct index_text {
 
 /* Errors as above. */
 snow_status snow_index_parse_text(index_text *text);
+
+/* `next` of bytes in any order, from `at` on. */
+typedef struct index_bytes {
+    snow_seekable *bytes;
+    uint64_t at;
+} index_bytes;
+snow_status snow_index_next(void *from, char *bytes, size_t size, size_t *got);
 
 /* An attribute's value, NULL if it is missing. */
 const char *snow_index_attribute(const char **attributes, const char *name);

@@ -45,6 +45,13 @@ snow_status snow_index_parse(snow_source *source, const index_xml *handlers,
     return snow_index_parse_text(&text);
 }
 
+snow_status snow_index_next(void *from, char *bytes, size_t size, size_t *got) {
+    index_bytes *b = from;
+    *got = snow_seekable_read(b->bytes, b->at, bytes, size);
+    b->at += *got;
+    return SNOW_STATUS_OK;
+}
+
 #if SNOW_HAVE_EXPAT
 
 #include <expat.h>

@@ -202,18 +202,20 @@ void snow_netcdf_attributes(const netcdf_header *header, snow_seekable *bytes,
     take_attributes(&c, take, user);
 }
 
-static void take_dimensions(cursor *c, netcdf_header *header) {
-    int64_t count = take_list(c, DIMENSIONS, 8);
+/* NULL after an error. */
+static void *make_list(cursor *c, int64_t count, size_t size) {
     if (c->status != SNOW_STATUS_OK)
-        return;
-    header->dimensions = snow_allocate_array(c->context, (uint64_t)count,
-                                             sizeof *header->dimensions);
-    if (!header->dimensions) {
-        c->status = SNOW_STATUS_NO_MEMORY;
-        return;
-    }
-    header->dimension_count = count;
-    for (int64_t i = 0; i < count; i++) {
+        return NULL;
+    void *list = snow_allocate_array(c->context, (uint64_t)count, size);
+    c->status = list ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+    return list;
+}
+
+static void take_dimensions(cursor *c, netcdf_header *header) {
+    const int64_t count = take_list(c, DIMENSIONS, 8);
+    header->dimensions = make_list(c, count, sizeof *header->dimensions);
+    header->dimension_count = header->dimensions ? count : 0;
+    for (int64_t i = 0; i < header->dimension_count; i++) {
         netcdf_dimension *d = &header->dimensions[i];
         take_name(c, d->name);
         d->size = take_count(c);
@@ -266,15 +268,8 @@ static void take_variable(cursor *c, netcdf_header *header,
 }
 
 static void take_variables(cursor *c, netcdf_header *header) {
-    int64_t count = take_list(c, VARIABLES, 28);
-    if (c->status != SNOW_STATUS_OK)
-        return;
-    header->variables = snow_allocate_array(c->context, (uint64_t)count,
-                                            sizeof *header->variables);
-    if (!header->variables) {
-        c->status = SNOW_STATUS_NO_MEMORY;
-        return;
-    }
+    const int64_t count = take_list(c, VARIABLES, 28);
+    header->variables = make_list(c, count, sizeof *header->variables);
     for (int64_t i = 0; i < count && c->status == SNOW_STATUS_OK; i++) {
         take_variable(c, header, &header->variables[i]);
         header->variable_count = i + 1;

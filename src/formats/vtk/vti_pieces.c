@@ -25,7 +25,7 @@ typedef struct vti_pieces {
     snow_seekable *bytes;
     const vti_header *whole;
     const vti_small *small;
-    uint64_t parsed; /* of the bytes */
+    index_bytes from;
     index_text xml;
     uint64_t head;                /* bytes before the first one's tag */
     uint64_t places[MOST_PIECES]; /* of their tags */
@@ -69,14 +69,6 @@ static snow_status begin_element(void *user, const char *name,
     vti_pieces *p = user;
     p->appended = p->xml.done = !strcmp(name, "AppendedData");
     return strcmp(name, "Piece") ? SNOW_STATUS_OK : take_piece(p, attributes);
-}
-
-static snow_status next_bytes(void *user, char *bytes, size_t size,
-                              size_t *got) {
-    vti_pieces *p = user;
-    *got = snow_seekable_read(p->bytes, p->parsed, bytes, size);
-    p->parsed += *got;
-    return SNOW_STATUS_OK;
 }
 
 static snow_status find_pieces(vti_pieces *p) {
@@ -149,14 +141,14 @@ snow_status snow_vti_read_pieces(snow_source *source, snow_seekable *bytes,
         return SNOW_STATUS_NO_MEMORY;
     p->source = source;
     p->context = context;
-    p->bytes = bytes;
+    p->bytes = p->from.bytes = bytes;
     p->whole = whole;
     p->small = small;
     p->xml = (index_text){.context = context,
                           .handlers = &handlers,
                           .user = p,
-                          .next = next_bytes,
-                          .from = p};
+                          .next = snow_index_next,
+                          .from = &p->from};
     snow_status status = find_pieces(p);
     const index_parts parts = {context, p->count, p, name_piece, open_piece};
     if (status == SNOW_STATUS_OK)

@@ -29,8 +29,7 @@ typedef struct small_array {
 } small_array;
 
 typedef struct survey {
-    snow_seekable *bytes;
-    uint64_t parsed; /* of them */
+    index_bytes from;
     index_text xml;
     vti_header file; /* what the file says of all arrays */
     bool rectilinear, fields, coordinates, sized;
@@ -91,14 +90,6 @@ static snow_status end_element(void *user, const char *name) {
     return SNOW_STATUS_OK;
 }
 
-static snow_status next_bytes(void *user, char *bytes, size_t size,
-                              size_t *got) {
-    survey *s = user;
-    *got = snow_seekable_read(s->bytes, s->parsed, bytes, size);
-    s->parsed += *got;
-    return SNOW_STATUS_OK;
-}
-
 /* Returns where the numbers of an array begin; false if that is not in the
  * file. */
 static bool find_numbers(const survey *s, const small_array *array,
@@ -108,7 +99,7 @@ static bool find_numbers(const survey *s, const small_array *array,
     if (array->header.form != VTI_APPENDED)
         return true;
     size_t got =
-        snow_seekable_read(s->bytes, s->appended, blanks, sizeof blanks);
+        snow_seekable_read(s->from.bytes, s->appended, blanks, sizeof blanks);
     const char *mark = s->appended ? memchr(blanks, '_', got) : NULL;
     return mark && snow_add_u64(s->appended + (uint64_t)(mark - blanks) + 1,
                                 array->header.offset, out);
@@ -142,7 +133,7 @@ static snow_status read_array(snow_source *source, const survey *s,
     char *block = snow_allocate(context, capacity);
     if (!block)
         return SNOW_STATUS_NO_MEMORY;
-    size_t got = snow_seekable_read(s->bytes, at, block, capacity);
+    size_t got = snow_seekable_read(s->from.bytes, at, block, capacity);
     snow_source *numbers;
     snow_status status = snow_source_open_memory(
         context, snow_source_name(source), block, got, &numbers);
@@ -188,13 +179,13 @@ snow_status snow_vti_survey(snow_source *source, snow_seekable *bytes,
     *out = (vti_small){.time = NAN};
     if (!s)
         return SNOW_STATUS_NO_MEMORY;
-    *s = (survey){.bytes = bytes,
+    *s = (survey){.from = {.bytes = bytes},
                   .rectilinear = rectilinear,
                   .xml = {.context = context,
                           .handlers = &handlers,
                           .user = s,
-                          .next = next_bytes,
-                          .from = s}};
+                          .next = snow_index_next,
+                          .from = &s->from}};
     snow_status status = take_all(source, s, out);
     snow_release(context, s);
     return status;

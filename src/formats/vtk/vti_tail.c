@@ -20,8 +20,8 @@ static const char end_tag[] = "</AppendedData";
 typedef struct tail {
     snow_source *source;
     snow_seekable *bytes;
-    uint64_t from; /* the next of them */
-    bool begun;    /* the first tag was there */
+    index_bytes from;
+    bool begun; /* the first tag was there */
     index_text xml;
     bool closed, appended; /* behind the last tag; at appended data */
 } tail;
@@ -46,8 +46,7 @@ static snow_status next_bytes(void *user, char *bytes, size_t size,
     tail *t = user;
     const char *first = NULL;
     while (!first) {
-        *got = snow_seekable_read(t->bytes, t->from, bytes, size);
-        t->from += *got;
+        SNOW_TRY(snow_index_next(&t->from, bytes, size, got));
         first = t->begun || !*got ? bytes : memchr(bytes, '<', *got);
     }
     t->begun = true;
@@ -60,7 +59,7 @@ static snow_status next_bytes(void *user, char *bytes, size_t size,
  * are open. */
 static snow_status parse(tail *t, const char *before, uint64_t from) {
     t->xml.before = before;
-    t->from = from;
+    t->from = (index_bytes){t->bytes, from};
     t->begun = false;
     const snow_status status = snow_index_parse_text(&t->xml);
     if (status != SNOW_STATUS_BAD_INPUT || !t->closed)
