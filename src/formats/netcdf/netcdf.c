@@ -267,9 +267,8 @@ static snow_status read_array(void *user, const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
     netcdf_job *job = user;
     snow_source *again = NULL;
-    const snow_bytes_behind behind = {.read_at = copy_held,
-                                      .user = job->bytes,
-                                      .size = snow_seekable_size(job->bytes)};
+    const snow_bytes_behind behind = {copy_held, job->bytes,
+                                      snow_seekable_size(job->bytes)};
     if (job->done || snow_seekable_held(job->bytes))
         SNOW_TRY(snow_source_open_with(snow_source_context(job->source),
                                        snow_source_name(job->source), &behind,
