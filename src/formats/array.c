@@ -32,16 +32,20 @@ typedef struct array_reader {
     uint64_t room; /* size of the buffer in bytes */
 } array_reader;
 
+snow_type snow_numpy_type(char kind, size_t bytes, snow_coding *coding) {
+    const bool is_bool = kind == 'b' && bytes == 1;
+    const bool half = kind == 'f' && bytes == 2;
+    *coding = is_bool ? SNOW_CODING_BOOL
+              : half  ? SNOW_CODING_HALF
+                      : SNOW_CODING_PLAIN;
+    return is_bool ? SNOW_TYPE_UINT8
+                   : snow_type_of_kind(kind, half ? 4 : bytes);
+}
+
 size_t snow_coding_size(snow_coding coding, snow_type type) {
-    switch (coding) {
-    case SNOW_CODING_HALF:
-        return 2;
-    case SNOW_CODING_BOOL:
-        return 1;
-    case SNOW_CODING_PLAIN:
-        break;
-    }
-    return snow_type_size(type);
+    return coding == SNOW_CODING_HALF   ? 2
+           : coding == SNOW_CODING_BOOL ? 1
+                                        : snow_type_size(type);
 }
 
 bool snow_array_steps(const int64_t *sizes, int rank, uint64_t value,
@@ -55,6 +59,19 @@ bool snow_array_steps(const int64_t *sizes, int rank, uint64_t value,
     }
     *all = bytes;
     return true;
+}
+
+void snow_array_of_volumes(const snow_volume_info *info, uint64_t skip,
+                           snow_array *array) {
+    const int64_t sizes[4] = {info->dims[0], info->dims[1], info->dims[2],
+                              info->times};
+    uint64_t steps[4] = {0};
+    if (!snow_array_steps(sizes, 4, snow_coding_size(array->coding, info->type),
+                          steps, &array->all) ||
+        !snow_add_u64(skip, array->all, &array->all))
+        array->all = UINT64_MAX;
+    memcpy(array->step, steps, sizeof array->step);
+    array->first = skip + (uint64_t)info->time * steps[3];
 }
 
 void snow_array_place(const snow_axes *roles, const uint64_t *steps,
@@ -394,59 +411,47 @@ snow_status snow_array_take(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* Reads all numbers of all channels, and keeps the box of one channel. */
-static snow_status read_channel(snow_source *source, const snow_region *region,
-                                int64_t channels, int64_t channel,
-                                snow_volume *volume) {
-    snow_context *context = snow_source_context(source);
-    snow_type type = volume->info.type;
-    size_t size = snow_type_size(type);
-    uint64_t bytes = region->all * (uint64_t)channels;
-    unsigned char *numbers = snow_allocate_array(context, bytes, 1);
-    if (!numbers)
-        return SNOW_STATUS_NO_MEMORY;
-    const int64_t count = (int64_t)(bytes / size);
-    const snow_region whole = {.all = bytes,
-                               .value = size,
-                               .dims = {count, 1, 1},
-                               .count = {count, 1, 1}};
-    const snow_file_part all = {&whole, 0, bytes};
-    snow_status status = snow_read_numbers(source, type, false, &all, numbers);
-    unsigned char *to = volume->owned;
-    for (int64_t run = 0;
-         status == SNOW_STATUS_OK && run < snow_region_runs(region); run++) {
-        uint64_t begin, end, step = (uint64_t)channels * size;
-        snow_region_run(region, run, &begin, &end);
-        put_plain(numbers + begin / size * step + (uint64_t)channel * size,
-                  step, to, size, (end - begin) / size, size);
-        to += end - begin;
-    }
-    snow_release(context, numbers);
-    return status;
-}
-
-/* A number needs at least a digit and a blank. */
+/* A number needs at least a digit and a blank.  Of several channels all numbers
+ * are read, and the box of one is kept. */
 snow_status snow_array_read_text(snow_source *source,
                                  const snow_volume_options *options,
                                  int64_t channels, int64_t channel,
                                  snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
+    const int64_t *dims = info->dims;
+    const int64_t sizes[4] = {channels, dims[0], dims[1], dims[2]};
+    const size_t size = snow_type_size(info->type);
+    snow_volume_info box = *info;
+    snow_array array = {.first = (uint64_t)channel * size};
     snow_region region;
     snow_volume *volume;
-    uint64_t bytes;
-    SNOW_TRY(snow_region_lay_out(context, options, info, &region));
-    if (!snow_mul_u64(region.all, (uint64_t)channels, &bytes) ||
-        bytes > (uint64_t)INT64_MAX)
-        bytes = INT64_MAX; /* expect refuses it */
-    SNOW_TRY(snow_source_expect(source, 2 * (bytes / region.value) - 1,
-                                "the voxels"));
+    uint64_t steps[4] = {0};
+    if (!snow_array_steps(sizes, 4, size, steps, &array.all))
+        array.all = INT64_MAX; /* what is read refuses it */
+    memcpy(array.step, steps + 1, sizeof array.step);
+    SNOW_TRY(snow_region_lay_out(context, options, &box, &region));
+    SNOW_TRY(
+        snow_source_expect(source, 2 * (array.all / size) - 1, "the voxels"));
+    if (channels == 1 || !out)
+        *info = box;
     if (!out)
         return SNOW_STATUS_OK;
-    const snow_file_part all = {&region, 0, region.all};
-    SNOW_TRY(snow_volume_new(context, info, &volume));
+    if (channels == 1) {
+        const snow_file_part all = {&region, 0, region.all};
+        SNOW_TRY(snow_volume_new(context, info, &volume));
+        return snow_volume_give(
+            snow_read_numbers(source, info->type, false, &all, volume->owned),
+            volume, out);
+    }
+    const snow_region whole = snow_array_flat(array.all, size);
+    const snow_file_part all = {&whole, 0, whole.all};
+    unsigned char *numbers = snow_allocate_array(context, whole.all, 1);
+    if (!numbers)
+        return SNOW_STATUS_NO_MEMORY;
     snow_status status =
-        channels == 1
-            ? snow_read_numbers(source, info->type, false, &all, volume->owned)
-            : read_channel(source, &region, channels, channel, volume);
-    return snow_volume_give(status, volume, out);
+        snow_read_numbers(source, info->type, false, &all, numbers);
+    if (status == SNOW_STATUS_OK)
+        status = snow_array_take(context, options, &array, numbers, info, out);
+    snow_release(context, numbers);
+    return status;
 }

@@ -33,6 +33,9 @@ typedef struct snow_array {
                   end, not finished */
 } snow_array;
 
+/* The type and coding of values of NumPy, whose kind may also be "b". */
+snow_type snow_numpy_type(char kind, size_t bytes, snow_coding *coding);
+
 /* Bytes of a stored value. */
 size_t snow_coding_size(snow_coding coding, snow_type type);
 
@@ -52,11 +55,25 @@ void snow_coding_put(snow_coding coding, bool big_endian, size_t size,
                      const unsigned char *from, uint64_t step,
                      unsigned char *to, uint64_t to_step, uint64_t count);
 
-/* Completes a reader, as snow_volume_read: applies the options' box, checks
- * that the source can hold the bytes, and makes the volume unless `out` is
- * NULL.  Reads the voxels in the memory order of all volumes, and finishes the
- * source unless more follows.  Errors: SNOW_STATUS_BAD_INPUT,
- * SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY. */
+/* Places the time step of info among volumes that follow one another behind
+ * `skip` bytes.  What is too large is refused where it is read. */
+void snow_array_of_volumes(const snow_volume_info *info, uint64_t skip,
+                           snow_array *array);
+
+/* Values of `size` bytes in a row, of which all are read. */
+static inline snow_region snow_array_flat(uint64_t bytes, size_t size) {
+    const int64_t count = (int64_t)(bytes / size);
+    return (snow_region){.all = bytes,
+                         .value = size,
+                         .dims = {count, 1, 1},
+                         .count = {count, 1, 1}};
+}
+
+/* Completes a reader: applies the options' box, checks that the source can hold
+ * the bytes, and makes the volume unless `out` is NULL, swapping bytes where
+ * the order is not the machine's.  Reads the voxels in the memory order of all
+ * volumes, and finishes the source unless more follows.  Errors:
+ * SNOW_STATUS_BAD_INPUT, SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY. */
 snow_status snow_array_read(snow_source *source,
                             const snow_volume_options *options,
                             const snow_array *array, snow_volume_info *info,

@@ -5,6 +5,7 @@
  * does not fit the scalar type is refused, also "1e1" and "2.0" for integers;
  * none is rounded or clipped. */
 #include "formats/ascii.h"
+#include "formats/bytes/number.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -29,6 +30,25 @@ typedef struct word_reader {
     size_t at, end;
     char word[WORD_BYTES];
 } word_reader;
+
+bool snow_next_word(const char **at, char *word, size_t size) {
+    const char *from = *at + strspn(*at, " \t");
+    size_t length = strcspn(from, " \t");
+    if (!length || length >= size)
+        return false;
+    memcpy(word, from, length);
+    word[length] = 0;
+    *at = from + length;
+    return true;
+}
+
+bool snow_has_word(const char *words, const char *word) {
+    char one[64];
+    while (snow_next_word(&words, one, sizeof one))
+        if (!strcmp(one, word))
+            return true;
+    return false;
+}
 
 /* The full range of 64 bits; strtoull alone would accept "-1". */
 static bool store_unsigned(const char *word, void *at) {
@@ -59,36 +79,21 @@ static bool store_real(snow_type type, const char *word, void *at) {
     return true;
 }
 
-/* Converts first and compares afterwards: a value that changes was out of the
- * type's range. */
 bool snow_store_number(snow_type type, const char *word, void *at) {
     int64_t value;
     if (type == SNOW_TYPE_UINT64)
         return store_unsigned(word, at);
     if (type == SNOW_TYPE_FLOAT32 || type == SNOW_TYPE_FLOAT64)
         return store_real(type, word, at);
-    if (!snow_parse_int64(word, &value))
+    if (!type || !snow_parse_int64(word, &value))
         return false;
-    switch (type) {
-#define STORE(name, c_type)                  \
-    case SNOW_TYPE_##name: {                 \
-        const c_type stored = (c_type)value; \
-        if ((int64_t)stored != value)        \
-            return false;                    \
-        memcpy(at, &stored, sizeof stored);  \
-        return true;                         \
-    }
-        STORE(INT8, int8_t)
-        STORE(UINT8, uint8_t)
-        STORE(INT16, int16_t)
-        STORE(UINT16, uint16_t)
-        STORE(INT32, int32_t)
-        STORE(UINT32, uint32_t)
-        STORE(INT64, int64_t)
-#undef STORE
-    default:
+    const size_t size = snow_type_size(type);
+    const bool has_sign = *snow_type_name(type) == 'i';
+    const int64_t most = INT64_MAX >> (64 - 8 * size - !has_sign);
+    if (value > most || value < (has_sign ? -most - 1 : 0))
         return false;
-    }
+    snow_put_low((uint64_t)value, size, at);
+    return true;
 }
 
 /* White space of the C library: NRRD's numbers may be arranged in any lines. */

@@ -10,6 +10,15 @@
  * range for floats. */
 bool snow_store_number(snow_type type, const char *word, void *at);
 
+/* Copies the next word between blanks or tabs, and moves behind it; returns
+ * false at the end, and for a word for which there is no room, which could
+ * match another if shortened. */
+bool snow_next_word(const char **at, char *word, size_t size);
+
+/* Returns whether a word is among those of a list, which are shorter than 64
+ * letters. */
+bool snow_has_word(const char *words, const char *word);
+
 /* Reads the numbers of a part, as if each stood in its bytes, and the blanks
  * after them, and stores those of the box in `voxels`.  With `commas`, commas
  * separate like blanks.  Errors: SNOW_STATUS_BAD_INPUT for too few numbers, and

@@ -3,8 +3,8 @@
  *
  * Readers give one component at a time.  The magnitude takes as many readings,
  * with two volumes in memory at once. */
-#include "formats/components.h"
 #include "formats/array.h"
+#include "formats/opening.h"
 #include "volume/mask.h"
 
 #include <math.h>

@@ -15,15 +15,24 @@ static inline snow_status snow_fail_unbuilt(snow_context *context,
                      package);
 }
 
-/* A snow_format.read that calls the module of that name. */
-static inline snow_status
-snow_read_by_module(const char *module_name, snow_source *source,
-                    const snow_volume_options *options, snow_volume_info *info,
-                    snow_volume **out) {
-    const snow_module *module;
-    SNOW_TRY(
-        snow_module_load(snow_source_context(source), module_name, &module));
-    return module->volume->read(source, options, info, out);
-}
+/* Defines a snow_format.read that does so. */
+#define SNOW_READ_UNBUILT(function, what, package)                            \
+    static snow_status function(snow_source *source,                          \
+                                const snow_volume_options *options,           \
+                                snow_volume_info *info, snow_volume **out) {  \
+        (void)options, (void)info, (void)out;                                 \
+        return snow_fail_unbuilt(snow_source_context(source), what, package); \
+    }
+
+/* One that calls the module of a name. */
+#define SNOW_READ_BY_MODULE(function, name)                                  \
+    static snow_status function(snow_source *source,                         \
+                                const snow_volume_options *options,          \
+                                snow_volume_info *info, snow_volume **out) { \
+        const snow_module *module;                                           \
+        SNOW_TRY(                                                            \
+            snow_module_load(snow_source_context(source), name, &module));   \
+        return module->volume->read(source, options, info, out);             \
+    }
 
 #endif

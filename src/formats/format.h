@@ -88,10 +88,18 @@ static inline bool snow_spacing_given(const snow_volume_options *options) {
 #define SNOW_SET_OF_FILES "set of %zu files"
 #define SNOW_COMPANION ".companion.ome"
 
+/* A format's number for a scalar type; one for no type ends a table of them. */
+typedef struct snow_coded_type {
+    int code;
+    snow_type type;
+} snow_coded_type;
+snow_type snow_type_of_code(const snow_coded_type *table, int code);
+
+/* The type of a kind, "i", "u" or "f", of so many bytes. */
+snow_type snow_type_of_kind(char kind, size_t bytes);
+
 /* The usual end of a binary reader whose time steps follow one another behind
- * `skip` bytes: lays the window, checks that the source can hold all, makes the
- * volume unless `out` is NULL, reads it, swaps bytes when `big_endian` differs
- * from the machine, finishes the source. */
+ * `skip` bytes; see snow_array_read (formats/array.h). */
 snow_status snow_volume_read(snow_source *source,
                              const snow_volume_options *options,
                              bool big_endian, uint64_t skip,
@@ -105,6 +113,11 @@ snow_status snow_volume_read(snow_source *source,
 snow_status snow_volume_open_named(snow_source *source, const char *name,
                                    const snow_volume_options *options,
                                    snow_volume_info *info, snow_volume **out);
+
+/* Adds to a text, with a decimal point in every locale; cut where there is no
+ * room. */
+void snow_append(char *text, size_t capacity, const char *format, ...)
+    SNOW_PRINTF(3, 4);
 
 /* Swaps the bytes of the voxels as read when the file's order is not the
  * machine's. */
@@ -123,20 +136,20 @@ snow_status snow_volume_replace_spacing(snow_context *context,
                                         const snow_volume_options *options,
                                         snow_volume_info *info);
 
-/* Ends what snow_lookup_begin began (io/lookup.h): gives the volume, or closes
- * it where something could not be looked up or read, even if the reader has
- * gone on without it.  `volume` and `out` may be NULL. */
+/* Ends the making of a volume: gives it, or closes it where that has failed.
+ * `volume` and `out` may be NULL. */
+snow_status snow_volume_give(snow_status status, snow_volume *volume,
+                             snow_volume **out);
+
+/* The same for what snow_lookup_begin began (io/lookup.h): it has failed where
+ * something could not be looked up or read, even if the reader has gone on
+ * without it. */
 snow_status snow_volume_finish(snow_context *context, snow_status status,
                                snow_volume *volume, snow_volume **out);
 
 /* Adds a name to a list for messages, as long as there is room. */
 void snow_list_add(char *list, size_t capacity, const char *format, ...)
     SNOW_PRINTF(3, 4);
-
-/* Gives a volume that was made, or closes it after a failure, whose status it
- * passes on.  `volume` and `out` may be NULL. */
-snow_status snow_volume_give(snow_status status, snow_volume *volume,
-                             snow_volume **out);
 
 /* Crops a volume that was read as a whole. */
 snow_status snow_volume_crop(const snow_volume_options *options,

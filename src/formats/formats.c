@@ -4,13 +4,10 @@
  * The first bytes decide, then the name; sizes from the user make everything
  * else raw data.  The file's name is added to every message here, so that
  * readers need not do it. */
-#include "formats/image_series.h"
+#include "formats/opening.h"
 
 #include "formats/amr/amr.h"
-#include "formats/bytes/bzip2.h"
-#include "formats/components.h"
-#include "formats/masked.h"
-#include "formats/unsupported.h"
+#include "formats/bytes/packed.h"
 #include "formats/zarr/zarr.h"
 #include "io/folder.h"
 #include "io/lookup.h"
@@ -52,26 +49,21 @@ static snow_status check_options(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* Applies the options for all formats: first the spacing, then the offset of
- * the box, which is a multiple of the spacing. */
-static snow_status finish_info(snow_context *context,
-                               const snow_volume_options *options,
-                               snow_volume_info *info) {
-    snow_volume_info_measure(info);
-    SNOW_TRY(snow_volume_replace_spacing(context, options, info));
-    const int64_t first[3] = {options->crop[0][0], options->crop[1][0],
-                              options->crop[2][0]};
-    *info = snow_volume_info_of_box(info, first, info->dims);
-    return SNOW_STATUS_OK;
-}
-
-/* The same at the end of a reading, which gives the volume. */
+/* Ends the reading of a volume, which may be NULL.  Applies the options for all
+ * formats: first the spacing, then the offset of the box, which is a multiple
+ * of the spacing. */
 static snow_status finish(snow_context *context, snow_status status,
                           const snow_volume_options *options,
-                          snow_volume_info *info, snow_volume *volume,
-                          snow_volume **out) {
+                          snow_volume_info *given, snow_volume *volume,
+                          snow_volume_info *info, snow_volume **out) {
+    const int64_t first[3] = {options->crop[0][0], options->crop[1][0],
+                              options->crop[2][0]};
+    if (status == SNOW_STATUS_OK) {
+        snow_volume_info_measure(given);
+        status = snow_volume_replace_spacing(context, options, given);
+    }
     if (status == SNOW_STATUS_OK)
-        status = finish_info(context, options, info);
+        *info = snow_volume_info_of_box(given, first, given->dims);
     if (status == SNOW_STATUS_OK && volume)
         volume->info = *info;
     return snow_volume_give(status, volume, out);
@@ -93,33 +85,33 @@ static snow_status read_whole(const snow_format *format, snow_source *source,
 static snow_status check_choice(snow_context *context,
                                 const snow_format *format,
                                 const snow_volume_options *options) {
-    if (options->dataset && !format->sets)
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "--dataset %.200s: files of the format %s have a "
-                         "single data set; remove the option",
-                         options->dataset, format->name);
-    if (options->channel && !format->channels)
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "channel %lld does not exist; files of the format %s "
-                         "have one value per voxel, so remove --channel",
-                         (long long)options->channel, format->name);
+    char channel[24] = "", levels[24] = "";
+    snow_append(channel, sizeof channel, "%lld", (long long)options->channel);
+    snow_append(levels, sizeof levels, "%lld", (long long)options->levels);
+    const char *part = options->component;
+    const struct {
+        bool ignored;
+        const char *option, *value, *why;
+    } choices[] = {
+        {options->dataset && !format->sets, "dataset", options->dataset,
+         "a single data set"},
+        {options->channel && !format->channels, "channel", channel,
+         "one value per voxel"},
+        {part && strcmp(part, "0") != 0 && !format->channels, "component", part,
+         "one value per voxel"},
+        {options->series && !format->series, "series", options->series,
+         "no series"},
+        {options->levels && !format->levels, "levels", levels,
+         "no levels of refinement"},
+    };
     SNOW_TRY(snow_component_check(context, format->names, options));
-    if (options->component && strcmp(options->component, "0") != 0 &&
-        !format->channels)
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "--component %.64s: files of the format %s have one "
-                         "value per voxel; remove the option",
-                         options->component, format->name);
-    if (options->series && !format->series)
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "--series %.64s: files of the format %s have no "
-                         "series; remove the option",
-                         options->series, format->name);
-    if (options->levels && !format->levels)
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "--levels %lld: files of the format %s have no levels "
-                         "of refinement; remove the option",
-                         (long long)options->levels, format->name);
+    for (size_t i = 0; i < sizeof choices / sizeof *choices; i++)
+        if (choices[i].ignored)
+            return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                             "--%s %.200s: files of the format %s have %s; "
+                             "remove the option",
+                             choices[i].option, choices[i].value, format->name,
+                             choices[i].why);
     return SNOW_STATUS_OK;
 }
 
@@ -136,12 +128,12 @@ static snow_status read_with(const snow_format *format, snow_source *source,
             "remove --dims, --type, --endian and --offset",
             format->name);
     SNOW_TRY(check_choice(context, format, options));
-    snow_volume *volume = NULL;
-    SNOW_TRY(
-        format->crops
-            ? format->read(source, options, info, out ? &volume : NULL)
-            : read_whole(format, source, options, info, out ? &volume : NULL));
-    return finish(context, SNOW_STATUS_OK, options, info, volume, out);
+    snow_volume *volume = NULL, **wanted = out ? &volume : NULL;
+    snow_volume_info given;
+    snow_status status =
+        format->crops ? format->read(source, options, &given, wanted)
+                      : read_whole(format, source, options, &given, wanted);
+    return finish(context, status, options, &given, volume, info, out);
 }
 
 /* An empty file has its own message: each format would miss something else.  A
@@ -184,13 +176,10 @@ static snow_status open_source(snow_source *source,
                                const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
-    snow_volume_info given;
     snow_status status = check_options(context, options);
     if (status == SNOW_STATUS_OK)
-        status = read_source(source, options, &given, out);
-    if (status == SNOW_STATUS_OK)
-        *info = given;
-    else
+        status = read_source(source, options, info, out);
+    if (status != SNOW_STATUS_OK)
         name_failure(context, status, snow_source_name(source));
     snow_source_close(source);
     return status;
@@ -215,9 +204,7 @@ static snow_status open_phantom(snow_context *context, const char *name,
     snow_volume_info given;
     SNOW_TRY(snow_phantom_make(context, name, options, 0, &given,
                                out ? &volume : NULL));
-    SNOW_TRY(finish(context, SNOW_STATUS_OK, options, &given, volume, out));
-    *info = given;
-    return SNOW_STATUS_OK;
+    return finish(context, SNOW_STATUS_OK, options, &given, volume, info, out);
 }
 
 /* Reads a folder or a pattern: a Zarr array, or files with one slice each. */
@@ -249,11 +236,9 @@ static snow_status open_stack(snow_context *context, const char *path,
     if (status == SNOW_STATUS_OK)
         status =
             read_folder(context, path, options, &given, out ? &volume : NULL);
-    status = finish(context, status, options, &given, volume, out);
-    if (status != SNOW_STATUS_OK)
-        return name_failure(context, status, path);
-    *info = given;
-    return SNOW_STATUS_OK;
+    status = finish(context, status, options, &given, volume, info, out);
+    return status == SNOW_STATUS_OK ? status
+                                    : name_failure(context, status, path);
 }
 
 static snow_open_named_fn open_named_path;

@@ -5,8 +5,8 @@
  * y; these are stacked.  Files outside the box along z are not opened.  A
  * missing number among the names is a missing slice, and refused.  If any file
  * is DICOM, formats/dicom/files.c reads them. */
-#include "formats/image_series.h"
 #include "formats/dicom/dicom.h"
+#include "formats/opening.h"
 #include "io/folder.h"
 
 #include <stdio.h>
@@ -33,11 +33,11 @@ static const snow_format *slice_format(const stack *s, const char *path) {
                : NULL;
 }
 
-/* Returns whether any file is a slice that cannot be a preview of others. */
-static bool holds_slices(const stack *s, const snow_folder *files) {
+/* Returns whether any file is a slice, or one that cannot be a preview. */
+static bool holds_any(const stack *s, const snow_folder *files, bool previews) {
     for (size_t i = 0; i < files->count; i++) {
         const snow_format *format = slice_format(s, files->paths[i]);
-        if (format && !format->previews)
+        if (format && (previews || !format->previews))
             return true;
     }
     return false;
@@ -48,7 +48,7 @@ static bool holds_slices(const stack *s, const snow_folder *files) {
 static snow_status choose_files(stack *s, const char *path,
                                 snow_folder *files) {
     size_t kept = 0, others = 0;
-    bool previews = holds_slices(s, files);
+    bool previews = holds_any(s, files, false);
     for (size_t i = 0; i < files->count; i++) {
         const snow_format *format = slice_format(s, files->paths[i]);
         if (!format || (previews && format->previews))
@@ -150,10 +150,8 @@ static snow_status choose_names(stack *s, snow_folder *files) {
             files->paths[kept++] = files->paths[i];
             continue;
         }
-        const size_t used = strlen(list);
         if (left++ < 3)
-            snprintf(list + used, sizeof list - used, "%s%.48s",
-                     used ? ", " : "", name);
+            snow_append(list, sizeof list, "%s%.48s", *list ? ", " : "", name);
     }
     files->count = kept;
     if (left)
@@ -163,38 +161,29 @@ static snow_status choose_names(stack *s, snow_folder *files) {
     return SNOW_STATUS_OK;
 }
 
-/* Returns the first file whose number is not a step after that before it, as
- * the first two are; 0: there is none. */
-static size_t uneven_at(const snow_folder *files, int which, bool *varies) {
-    int64_t step = 0;
-    *varies = false;
-    for (size_t i = 1; i < files->count; i++) {
-        const int64_t a = number_at(files->paths[i - 1], which);
-        const int64_t b = number_at(files->paths[i], which);
-        *varies |= a != b;
-        if (i == 1)
-            step = b - a;
-        if (b - a != step)
-            return i;
-    }
-    return 0;
-}
-
 /* Numbers may begin anywhere, but one of each name must have equal steps. */
 static snow_status check_numbers(const stack *s) {
-    const snow_folder *files = s->files;
-    size_t uneven = 0;
+    char *const *paths = s->files->paths;
+    size_t uneven = 1;
     bool any = false;
-    for (int which = 0; files->count > 1; which++) {
-        bool varies, all = true;
-        for (size_t i = 0; i < files->count && all; i++)
-            all = number_at(files->paths[i], which) >= 0;
+    for (int which = 0; s->files->count > 1; which++) {
+        int64_t before = number_at(paths[0], which);
+        const int64_t step = number_at(paths[1], which) - before;
+        bool all = before >= 0, varies = false;
+        size_t at = 0; /* the first that is no such step after that before it */
+        for (size_t i = 1; i < s->files->count && all; i++) {
+            const int64_t number = number_at(paths[i], which);
+            all = number >= 0;
+            varies |= number != before;
+            if (!at && number - before != step)
+                at = i;
+            before = number;
+        }
         if (!all)
             break;
-        const size_t at = uneven_at(files, which, &varies);
         if (!at && varies)
             return SNOW_STATUS_OK;
-        uneven = at && varies ? at : uneven;
+        uneven = at ? at : uneven;
         any = true;
     }
     if (!any) /* names without numbers have no gaps */
@@ -203,8 +192,7 @@ static snow_status check_numbers(const stack *s) {
         s->context, SNOW_STATUS_BAD_INPUT,
         "its files are not numbered in equal steps (%s, then %s); add "
         "the missing slices, or give a pattern that matches the others",
-        files->paths[uneven ? uneven - 1 : 0],
-        files->paths[uneven ? uneven : 1]);
+        paths[uneven - 1], paths[uneven]);
 }
 
 /* Opens a file; messages begin with its name. */
@@ -219,9 +207,13 @@ static snow_status read_file(const stack *s, size_t index,
     return status;
 }
 
-static snow_status refuse_unlike(const stack *s, size_t index,
-                                 const snow_volume_info *info) {
+static snow_status compare(const stack *s, size_t index,
+                           const snow_volume_info *info,
+                           const snow_volume_info *other) {
     const snow_volume_info *first = &s->first;
+    if (info->type == other->type &&
+        memcmp(info->dims, other->dims, sizeof info->dims) == 0)
+        return SNOW_STATUS_OK;
     return snow_fail(
         s->context, SNOW_STATUS_BAD_INPUT,
         "%s: has %lldx%lldx%lld voxels of %s, but the first slice has "
@@ -233,30 +225,21 @@ static snow_status refuse_unlike(const stack *s, size_t index,
         snow_type_name(first->type));
 }
 
-static bool is_like(const snow_volume_info *info,
-                    const snow_volume_info *other) {
-    return info->type == other->type &&
-           memcmp(info->dims, other->dims, sizeof info->dims) == 0;
-}
-
-/* Compares a whole slice with the first one: a box may lie in both although
- * they have different sizes. */
-static snow_status compare_whole(const stack *s, size_t index) {
-    snow_volume_info info;
+/* Looks at a whole file: a box may lie in two of different sizes. */
+static snow_status look(const stack *s, size_t index, snow_volume_info *info) {
     stack whole = *s;
     memset(whole.options.crop, 0, sizeof whole.options.crop);
-    SNOW_TRY(read_file(&whole, index, &info, NULL));
-    return is_like(&info, &s->first) ? SNOW_STATUS_OK
-                                     : refuse_unlike(s, index, &info);
+    return read_file(&whole, index, info, NULL);
 }
 
 static snow_status read_slice(const stack *s, size_t index, snow_volume **out) {
     snow_volume_info info;
-    if (s->cropped)
-        SNOW_TRY(compare_whole(s, index));
+    if (s->cropped) {
+        SNOW_TRY(look(s, index, &info));
+        SNOW_TRY(compare(s, index, &info, &s->first));
+    }
     SNOW_TRY(read_file(s, index, &info, out));
-    return is_like(&info, &s->slice) ? SNOW_STATUS_OK
-                                     : refuse_unlike(s, index, &info);
+    return compare(s, index, &info, &s->slice);
 }
 
 /* A file with several slices would be a volume of its own, perhaps a time
@@ -303,17 +286,13 @@ static snow_status read_slices(stack *s, int64_t first, snow_volume *volume) {
 
 /* Returns whether the first file leads to all others, which are one volume
  * whatever their names. */
-static bool is_set(const stack *s, const snow_volume_options *options) {
-    snow_volume_options any = *options;
+static bool is_set(const stack *s) {
     snow_volume_info info;
     size_t files;
-    memset(any.crop, 0, sizeof any.crop);
     snow_warning_fn *warning = s->context->warning;
     s->context->warning = NULL;
-    stack whole = *s;
-    whole.options = any;
     const bool is = !strcmp(s->format->name, "tiff") &&
-                    read_file(&whole, 0, &info, NULL) == SNOW_STATUS_OK &&
+                    look(s, 0, &info) == SNOW_STATUS_OK &&
                     sscanf(info.storage, SNOW_SET_OF_FILES, &files) == 1 &&
                     files >= s->files->count;
     s->context->warning = warning;
@@ -332,7 +311,7 @@ static snow_status read_stack(stack *s, snow_folder *files,
             "--series %.64s: only DICOM files have series; remove the option",
             options->series);
     s->options = *options;
-    if (is_set(s, options))
+    if (is_set(s))
         return read_file(s, 0, info, out);
     memset(s->options.crop, 0, sizeof s->options.crop);
     SNOW_TRY(choose_names(s, files));
@@ -352,20 +331,8 @@ static snow_status read_stack(stack *s, snow_folder *files,
     }
     snow_volume *volume;
     SNOW_TRY(snow_volume_new(s->context, info, &volume));
-    snow_status status = read_slices(s, window.first[2], volume);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    *out = volume;
-    return SNOW_STATUS_OK;
-}
-
-static bool holds_any(const stack *s, const snow_folder *files) {
-    for (size_t i = 0; i < files->count; i++)
-        if (slice_format(s, files->paths[i]))
-            return true;
-    return false;
+    return snow_volume_give(read_slices(s, window.first[2], volume), volume,
+                            out);
 }
 
 /* A folder without slices may hold folders of DICOM files, as disks do, whose
@@ -400,7 +367,7 @@ snow_status snow_stack_read(snow_context *context, const char *path,
     SNOW_TRY(snow_folder_list(context, path, &files));
     snow_status status = SNOW_STATUS_OK;
     bool dicom = snow_dicom_among(context, &files, find);
-    if (!dicom && !holds_any(&s, &files) && snow_is_folder(context, path))
+    if (!dicom && !holds_any(&s, &files, true) && snow_is_folder(context, path))
         status = look_below(&s, path, &files, &dicom);
     if (status != SNOW_STATUS_OK) {
         /* the message is there */

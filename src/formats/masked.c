@@ -1,5 +1,5 @@
 /* formats/masked.c - a volume and its mask, both from files. */
-#include "formats/masked.h"
+#include "formats/opening.h"
 #include "io/source.h"
 #include "volume/mask.h"
 

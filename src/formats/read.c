@@ -1,39 +1,21 @@
 /* formats/read.c - what readers share: voxels that lie in a file as they do in
  * memory, the choice of a time step, another spacing, a box. */
-#include "formats/format.h"
+#include "formats/array.h"
 #include "io/lookup.h"
 
+#include <snowglass/extend.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-/* The bytes are compared with the source before the voxels get their memory: a
- * header of 400 bytes must not cost gigabytes. */
+/* A header of 400 bytes must not cost gigabytes. */
 snow_status snow_volume_read(snow_source *source,
                              const snow_volume_options *options,
                              bool big_endian, uint64_t skip,
                              snow_volume_info *info, snow_volume **out) {
-    snow_context *context = snow_source_context(source);
-    snow_region window;
-    uint64_t all;
-    SNOW_TRY(snow_region_lay_out(context, options, info, &window));
-    /* More than 64 bits can count: expect refuses it with its usual words. */
-    if (!snow_add_u64(skip, window.all, &all))
-        all = UINT64_MAX;
-    SNOW_TRY(snow_source_expect(source, all, "the voxels"));
-    if (!out)
-        return SNOW_STATUS_OK;
-    const snow_file_part part = {&window, 0, window.all};
-    snow_volume *volume;
-    SNOW_TRY(snow_volume_new(context, info, &volume));
-    snow_status status = snow_source_skip(source, skip, "the voxels");
-    if (status == SNOW_STATUS_OK)
-        status = snow_file_part_read(source, &part, volume->owned);
-    if (status == SNOW_STATUS_OK)
-        status = snow_source_finish(source);
-    if (status == SNOW_STATUS_OK)
-        snow_volume_order_bytes(volume, big_endian);
-    return snow_volume_give(status, volume, out);
+    snow_array array = {.big_endian = big_endian};
+    snow_array_of_volumes(info, skip, &array);
+    return snow_array_read(source, options, &array, info, out);
 }
 
 void snow_volume_order_bytes(snow_volume *volume, bool big_endian) {
@@ -105,11 +87,6 @@ snow_status snow_volume_crop(const snow_volume_options *options,
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_volume_finish(snow_context *context, snow_status status,
-                               snow_volume *volume, snow_volume **out) {
-    return snow_volume_give(snow_lookup_end(context, status), volume, out);
-}
-
 snow_status snow_volume_give(snow_status status, snow_volume *volume,
                              snow_volume **out) {
     if (status == SNOW_STATUS_OK && out)
@@ -117,6 +94,19 @@ snow_status snow_volume_give(snow_status status, snow_volume *volume,
     else
         snow_volume_close(volume);
     return status;
+}
+
+snow_status snow_volume_finish(snow_context *context, snow_status status,
+                               snow_volume *volume, snow_volume **out) {
+    return snow_volume_give(snow_lookup_end(context, status), volume, out);
+}
+
+void snow_append(char *text, size_t capacity, const char *format, ...) {
+    const size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    snow_text_vprint(text + used, capacity - used, format, arguments);
+    va_end(arguments);
 }
 
 void snow_list_add(char *list, size_t capacity, const char *format, ...) {
@@ -130,6 +120,20 @@ void snow_list_add(char *list, size_t capacity, const char *format, ...) {
         snprintf(list + used, capacity - used, "%s%s", used ? ", " : "", text);
     else if (used > 3 && strcmp(list + used - 3, "...") != 0)
         memcpy(list + used, " ...", 5);
+}
+
+snow_type snow_type_of_code(const snow_coded_type *table, int code) {
+    while (table->type && table->code != code)
+        table++;
+    return table->type;
+}
+
+snow_type snow_type_of_kind(char kind, size_t bytes) {
+    for (int type = SNOW_TYPE_NONE + 1; type <= SNOW_TYPE_FLOAT64; type++)
+        if (*snow_type_name((snow_type)type) == kind &&
+            snow_type_size((snow_type)type) == bytes)
+            return (snow_type)type;
+    return SNOW_TYPE_NONE;
 }
 
 bool snow_format_has_name(const snow_format *format, const char *name) {

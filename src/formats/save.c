@@ -5,21 +5,19 @@
 #include "base/monitor.h"
 #include "formats/write.h"
 
-#include <stdio.h>
-#include <string.h>
-
 static const struct {
     const char *suffix;
     const snow_format *format;
     bool packed;
+    const char *unscaled; /* what cannot scale values; NULL: it can */
 } endings[] = {
-    {".nrrd", &snow_format_nrrd, false},
-    {".nii", &snow_format_nifti, false},
-    {".nii.gz", &snow_format_nifti, true},
-    {".mha", &snow_format_metaimage, false},
-    {".npy", &snow_format_npy, false},
-    {".raw", &snow_format_raw, false},
-    {".raw.gz", &snow_format_raw, true},
+    {".nrrd", &snow_format_nrrd, false, "NRRD"},
+    {".nii", &snow_format_nifti, false, NULL},
+    {".nii.gz", &snow_format_nifti, true, NULL},
+    {".mha", &snow_format_metaimage, false, NULL},
+    {".npy", &snow_format_npy, false, "NumPy arrays"},
+    {".raw", &snow_format_raw, false, "raw data"},
+    {".raw.gz", &snow_format_raw, true, "raw data"},
 };
 #define ENDING_COUNT (sizeof endings / sizeof *endings)
 
@@ -29,17 +27,16 @@ const char *snow_volume_format_suffix(size_t index) {
 
 static snow_status refuse_name(snow_context *context, const char *path) {
     char names[128] = "";
-    size_t used = 0;
-    for (size_t i = 0; i < ENDING_COUNT && used < sizeof names; i++)
-        used += (size_t)snprintf(names + used, sizeof names - used, " %s",
-                                 endings[i].suffix);
+    for (size_t i = 0; i < ENDING_COUNT; i++)
+        snow_append(names, sizeof names, " %s", endings[i].suffix);
     return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                      "%s: volumes are written as%s; use one of these endings",
                      path, names);
 }
 
-/* The name is checked first, so that a wrong one never creates a file; a file
- * that fails half-way is aborted, never committed. */
+/* What can be refused is first, so that it never creates a file: a scaling that
+ * was dropped would change every value.  A file that fails half-way is aborted,
+ * never committed. */
 snow_status snow_volume_save(const snow_volume *volume, const char *path,
                              bool overwrite) {
     size_t i = 0;
@@ -48,6 +45,13 @@ snow_status snow_volume_save(const snow_volume *volume, const char *path,
         i++;
     if (i == ENDING_COUNT)
         return refuse_name(volume->context, path);
+    const snow_volume_info *info = &volume->info;
+    if (endings[i].unscaled && (info->slope != 1 || info->intercept != 0))
+        return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
+                         "%s: %s cannot hold slope %g and intercept %g; write "
+                         ".nii or .mha",
+                         path, endings[i].unscaled, info->slope,
+                         info->intercept);
     snow_writer *writer;
     SNOW_TRY(snow_writer_open(volume->context, path, overwrite, &writer));
     snow_monitor monitor;

@@ -2,7 +2,7 @@
  * to convert them.
  *
  * Magic numbers are those of file(1). */
-#include "formats/unsupported.h"
+#include "formats/opening.h"
 
 #include <string.h>
 

@@ -3,7 +3,6 @@
 
 #include "base/monitor.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* Voxels turned around at a time on machines of the other byte order. */
@@ -72,16 +71,9 @@ snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer) {
     return SNOW_STATUS_OK;
 }
 
-int snow_print_numbers(char *text, size_t capacity, const double *values,
-                       int count, const char *between) {
-    int used = 0;
-    for (int i = 0; i < count; i++) {
-        if (i)
-            used +=
-                snprintf(text + used, capacity - (size_t)used, "%s", between);
-        /* Adding 0 turns -0 into 0. */
-        used += snow_text_print(text + used, capacity - (size_t)used, "%.17g",
-                                values[i] + 0.0);
-    }
-    return used;
+void snow_append_numbers(char *text, size_t capacity, const double *values,
+                         int count, const char *between) {
+    for (int i = 0; i < count; i++) /* adding 0 turns -0 into 0 */
+        snow_append(text, capacity, "%s%.17g", i ? between : "",
+                    values[i] + 0.0);
 }

@@ -5,89 +5,31 @@
  * chunk about their meaning.  Reads every kind of PNG, as 16 bits per channel,
  * with alpha multiplied in; checksums must be right, and chunks other than the
  * picture are ignored.
- *
- * libpng allocates from the context, and leaves by longjmp on errors.  To lose
- * no variable, everything that must survive is in a `png_job` of the function
- * above the one that calls setjmp. */
+ */
+#include "io/png.h"
 #include "image/image.h"
 
 #include <assert.h>
-#include <png.h>
-#include <setjmp.h>
 #include <stdio.h>
 #include <string.h>
 #include <zlib.h>
 
 static_assert(sizeof(float) == 4, "16-bit pixels are read behind float ones");
 
-typedef struct png_job {
-    snow_context *context;
-    snow_status status;  /* why libpng failed, SNOW_STATUS_OK before */
-    snow_status refusal; /* the status of libpng's own errors */
-    const char *prefix;  /* the beginning of their messages */
-    const char *remedy;  /* and their end */
-    const char *comment; /* when writing; NULL: none */
-    snow_source *source; /* when reading */
-    snow_writer *writer; /* when writing */
-    png_structp png;
-    png_infop info;
-    jmp_buf jump;
-} png_job;
+typedef struct png_writer {
+    snow_png job;
+    const char *comment; /* NULL: none */
+    snow_writer *writer;
+} png_writer;
 
-/* --- between libpng and the library --------------------------------------- */
+/* --- writing -------------------------------------------------------------- */
 
-/* Replaces malloc, also for zlib's state.  libpng may continue without the
- * block, or report an error; the status is kept for that case. */
-static void *allocate_block(png_structp png, png_alloc_size_t bytes) {
-    png_job *job = png_get_mem_ptr(png);
-    void *block = snow_allocate(job->context, bytes);
-    if (!block)
-        job->status = SNOW_STATUS_NO_MEMORY;
-    return block;
-}
-
-static void release_block(png_structp png, void *block) {
-    png_job *job = png_get_mem_ptr(png);
-    snow_release(job->context, block);
-}
-
-/* Leaves libpng after an error that already has its message. */
-static void leave(png_job *job, snow_status status) {
-    if (job->status == SNOW_STATUS_OK)
-        job->status = status;
-    longjmp(job->jump, 1);
-}
-
-/* Handles libpng's errors.  A failure below libpng (memory, the file) has a
- * more specific message. */
-static void note_error(png_structp png, png_const_charp text) {
-    png_job *job = png_get_error_ptr(png);
-    if (job->status == SNOW_STATUS_OK)
-        snow_fail(job->context, job->refusal, "%s (libpng: %s); %s",
-                  job->prefix, text, job->remedy);
-    leave(job, job->refusal);
-}
-
-/* Ignores warnings: they change nothing in the pixels. */
-static void note_warning(png_structp png, png_const_charp text) {
-    (void)png;
-    (void)text;
-}
-
-/* Sources and writers transfer all bytes, or fail with a message. */
-static void read_bytes(png_structp png, png_bytep bytes, size_t size) {
-    png_job *job = png_get_io_ptr(png);
-    snow_status status =
-        snow_source_read_all(job->source, bytes, size, "the PNG data");
-    if (status != SNOW_STATUS_OK)
-        leave(job, status);
-}
-
+/* Writers transfer all bytes, or fail with a message. */
 static void write_bytes(png_structp png, png_bytep bytes, size_t size) {
-    png_job *job = png_get_io_ptr(png);
-    snow_status status = snow_writer_write(job->writer, bytes, size);
+    png_writer *to = png_get_io_ptr(png);
+    snow_status status = snow_writer_write(to->writer, bytes, size);
     if (status != SNOW_STATUS_OK)
-        leave(job, status);
+        snow_png_leave(&to->job, status);
 }
 
 /* The writer flushes when it commits. */
@@ -95,29 +37,16 @@ static void flush_nothing(png_structp png) {
     (void)png;
 }
 
-/* libpng returned no structure: out of memory, or it is not the libpng of the
- * headers that this was built with. */
-static snow_status refuse_library(png_job *job) {
-    if (job->status != SNOW_STATUS_OK)
-        return job->status;
-    return snow_fail(job->context, SNOW_STATUS_FAILED,
-                     "libpng %s is not compatible with %s, for which this was "
-                     "built; install the latter",
-                     png_get_libpng_ver(NULL), PNG_LIBPNG_VER_STRING);
-}
-
-/* --- writing -------------------------------------------------------------- */
-
 /* A page's libpng is built without texts. */
-static void set_comment(png_job *job) {
+static void set_comment(png_writer *to) {
 #ifdef PNG_WRITE_tEXt_SUPPORTED
-    char *text = (char *)(uintptr_t)job->comment, key[] = "Snowglass";
+    char *text = (char *)(uintptr_t)to->comment, key[] = "Snowglass";
     png_text chunk = {
         .compression = PNG_TEXT_COMPRESSION_NONE, .key = key, .text = text};
     if (text)
-        png_set_text(job->png, job->info, &chunk, 1);
+        png_set_text(to->job.png, to->job.info, &chunk, 1);
 #else
-    (void)job;
+    (void)to;
 #endif
 }
 
@@ -125,11 +54,12 @@ static void set_comment(png_job *job) {
  * trade-off for renderings: as fast as deflate's quickest matching at 8 bits
  * and a third faster at 16, in somewhat less space.  Level 6 takes four times
  * as long for a fifth less. */
-static void write_header(png_job *job, snow_levels *levels) {
+static void write_header(png_writer *to, snow_levels *levels) {
     static const int types[] = {0, PNG_COLOR_TYPE_GRAY,
                                 PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
                                 PNG_COLOR_TYPE_RGB_ALPHA};
-    png_set_write_fn(job->png, job, write_bytes, flush_nothing);
+    const snow_png *job = &to->job;
+    png_set_write_fn(job->png, to, write_bytes, flush_nothing);
     png_set_compression_level(job->png, 1);
     png_set_compression_strategy(job->png, Z_RLE);
     png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
@@ -138,22 +68,17 @@ static void write_header(png_job *job, snow_levels *levels) {
                  (png_uint_32)levels->image->height, levels->bits,
                  types[levels->samples], PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    set_comment(job);
+    set_comment(to);
     png_write_info(job->png, job->info);
 }
 
 /* Every failure in libpng returns here, once. */
-static snow_status run_writer(png_job *job, snow_levels *levels) {
+static snow_status run_writer(png_writer *to, snow_levels *levels) {
+    snow_png *job = &to->job;
     if (setjmp(job->jump))
         return job->status;
-    job->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, job, note_error,
-                                         note_warning, job, allocate_block,
-                                         release_block);
-    if (job->png)
-        job->info = png_create_info_struct(job->png);
-    if (!job->info)
-        return refuse_library(job);
-    write_header(job, levels);
+    SNOW_TRY(snow_png_make(job, true));
+    write_header(to, levels);
     for (int y = 0; y < levels->image->height; y++) {
         SNOW_TRY(snow_image_report(levels->image, y));
         png_write_row(job->png, snow_levels_row(levels, y));
@@ -166,30 +91,21 @@ static snow_status write_png(const snow_image *image,
                              const snow_image_options *options,
                              snow_writer *writer) {
     snow_levels levels;
-    png_job job = {.context = image->context,
-                   .refusal = SNOW_STATUS_FAILED,
-                   .prefix = "the PNG file cannot be written",
-                   .remedy = "write a .npy instead",
-                   .comment = options->comment,
-                   .writer = writer};
+    png_writer to = {.job = {.context = image->context,
+                             .refusal = SNOW_STATUS_FAILED,
+                             .prefix = "the PNG file cannot be written",
+                             .remedy = "write a .npy instead"},
+                     .comment = options->comment,
+                     .writer = writer};
     snow_status status = snow_levels_begin(image, options, false, &levels);
     if (status == SNOW_STATUS_OK)
-        status = run_writer(&job, &levels);
-    png_destroy_write_struct(&job.png, &job.info);
+        status = run_writer(&to, &levels);
+    png_destroy_write_struct(&to.job.png, &to.job.info);
     snow_levels_end(&levels);
     return status;
 }
 
 /* --- reading -------------------------------------------------------------- */
-
-static bool probe_png(const unsigned char *bytes, size_t size) {
-    return size >= 8 && png_sig_cmp(bytes, 0, 8) == 0;
-}
-
-static uint32_t big_endian_32(const unsigned char *bytes) {
-    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 |
-           (uint32_t)bytes[2] << 8 | bytes[3];
-}
 
 /* Checks IHDR, which comes first, before libpng does.  Sides that are too long,
  * or need more compressed bytes than the file has, are refused before anything
@@ -203,35 +119,17 @@ static snow_status check_header(snow_source *source) {
                          "%s: the PNG file is truncated or damaged in its "
                          "header; get it again",
                          snow_source_name(source));
-    uint64_t width = big_endian_32(start + 16);
-    uint64_t height = big_endian_32(start + 20);
-    SNOW_TRY(snow_image_check_sides(source, (int64_t)width, (int64_t)height));
+    int64_t sides[2];
+    snow_png_sides(start, sides);
+    SNOW_TRY(snow_image_check_sides(source, sides[0], sides[1]));
     /* Bits per pixel in the file, from IHDR's depth and colour type; the
      * smallest possible for combinations that libpng will refuse. */
     static const unsigned char samples[7] = {1, 1, 3, 1, 2, 1, 4};
-    uint64_t bits = width * height *
+    uint64_t bits = (uint64_t)(sides[0] * sides[1]) *
                     (start[24] >= 1 && start[24] <= 16 && start[25] < 7
                          ? start[24] * samples[start[25]]
                          : 1);
     return snow_source_expect(source, bits / 8 / 1032, "the pixels");
-}
-
-/* Reads everything before the pixels.  libpng will give 8 bytes per pixel: red,
- * green, blue, alpha, 16 bits, the high byte first. */
-static void begin_reading(png_job *job) {
-    png_structp png = job->png;
-    png_set_read_fn(png, job, read_bytes);
-    png_set_user_limits(png, SNOW_IMAGE_SIDE, SNOW_IMAGE_SIDE);
-    png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-    /* -1: all chunks but IHDR, PLTE, tRNS, IDAT and IEND */
-    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
-    /* An error that libpng would forgive, such as a wrong Adler-32, is an
-     * error. */
-    png_set_benign_errors(png, 0);
-    png_read_info(png, job->info);
-    png_set_expand_16(png);
-    png_set_gray_to_rgb(png);
-    png_set_add_alpha(png, 0xffff, PNG_FILLER_AFTER);
 }
 
 /* A row of `width` float pixels is twice as long as one of 16-bit pixels, so
@@ -248,7 +146,7 @@ static unsigned char *raw_row(const snow_image *image, int y) {
 
 /* Reads the pixels into the picture's own memory; all passes of an interlaced
  * file write to the same place. */
-static void read_rows(png_job *job, const snow_image *image) {
+static void read_rows(snow_png *job, const snow_image *image) {
     int passes = png_set_interlace_handling(job->png);
     png_read_update_info(job->png, job->info);
     if (png_get_rowbytes(job->png, job->info) != 8 * (size_t)image->width)
@@ -279,17 +177,15 @@ static void widen_row(const snow_image *image, int y) {
 
 /* Every failure in libpng returns here, once; the caller frees *image if it is
  * not NULL. */
-static snow_status run_reader(png_job *job, snow_image **image) {
+static snow_status run_reader(snow_png *job, snow_image **image) {
     if (setjmp(job->jump))
         return job->status;
-    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, note_error,
-                                        note_warning, job, allocate_block,
-                                        release_block);
-    if (job->png)
-        job->info = png_create_info_struct(job->png);
-    if (!job->info)
-        return refuse_library(job);
-    begin_reading(job);
+    /* libpng will give 8 bytes per pixel: red, green, blue, alpha, 16 bits, the
+     * high byte first. */
+    SNOW_TRY(snow_png_begin(job, SNOW_IMAGE_SIDE));
+    png_set_expand_16(job->png);
+    png_set_gray_to_rgb(job->png);
+    png_set_add_alpha(job->png, 0xffff, PNG_FILLER_AFTER);
     SNOW_TRY(snow_image_make(
         job->context, (int)png_get_image_width(job->png, job->info),
         (int)png_get_image_height(job->png, job->info), 4, image));
@@ -303,11 +199,11 @@ static snow_status read_png(snow_source *source, snow_image **out) {
     char prefix[SNOW_MESSAGE_BYTES];
     snprintf(prefix, sizeof prefix, "%s: the PNG file is damaged",
              snow_source_name(source));
-    png_job job = {.context = context,
-                   .refusal = SNOW_STATUS_BAD_INPUT,
-                   .prefix = prefix,
-                   .remedy = "get it again",
-                   .source = source};
+    snow_png job = {.context = context,
+                    .refusal = SNOW_STATUS_BAD_INPUT,
+                    .prefix = prefix,
+                    .remedy = "get it again",
+                    .source = source};
     snow_image *image = NULL;
     snow_status status = run_reader(&job, &image);
     png_destroy_read_struct(&job.png, &job.info, NULL);
@@ -326,6 +222,6 @@ const snow_image_format snow_image_png = {
     .suffix = ".png",
     .bits = 16,
     .write = write_png,
-    .probe = probe_png,
+    .probe = snow_png_probe,
     .read = read_png,
 };

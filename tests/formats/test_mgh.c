@@ -153,7 +153,7 @@ static void damaged_files_are_refused(void **state) {
     support_bad_file(files, put_file(files, &file), "truncated");
     for (int i = 4; i < 20; i += 4)
         put(&file, i, INT32_MAX);
-    support_bad_file(files, put_file(files, &file), "too large for any file");
+    support_bad_file(files, put_file(files, &file), "larger than any file");
     file.size = 280;
     support_bad_file(files, put_file(files, &file), "too early");
 }

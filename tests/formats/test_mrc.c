@@ -157,7 +157,7 @@ static void headers_that_lie_are_refused(void **state) {
                      "too early");
     for (int i = 0; i < 3; i++)
         put_whole(&m, 1 + i, INT32_MAX);
-    support_bad_file(files, write_map(files, &m), "too large for any file");
+    support_bad_file(files, write_map(files, &m), "larger than any file");
 }
 
 int main(void) {

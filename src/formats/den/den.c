@@ -9,6 +9,7 @@
  *  28 .. 30  warps, and the number of bytes that follow
  *
  * The format knows no spacing. */
+#include "formats/bytes/number.h"
 #include "formats/format.h"
 
 #define NUMBERS 31
@@ -17,8 +18,8 @@
 #define LENGTH 29
 
 static int number(const unsigned char *bytes, int index) {
-    bool big = bytes[0] == 0; /* the version is 1 */
-    return bytes[2 * index + big] + 256 * bytes[2 * index + !big];
+    /* The version is 1. */
+    return (int)snow_number_at(bytes + 2 * index, 2, bytes[0] == 0);
 }
 
 /* No other data are consistent in this way by chance. */

@@ -12,6 +12,7 @@
  *
  * The origin is the first voxel in LPS, as ITK has it; where MIRTK wrote
  * directions too, it is the centre of the volume in RAS. */
+#include "base/vec3.h"
 #include "formats/bytes/number.h"
 #include "formats/format.h"
 
@@ -20,13 +21,11 @@
 #define HEADER_BYTES 256
 #define MIRTK 815
 
-static const struct {
-    int code;
-    snow_type type;
-} types[] = {
+static const snow_coded_type types[] = {
     {1, SNOW_TYPE_UINT8},  {7, SNOW_TYPE_INT8},     {8, SNOW_TYPE_UINT8},
     {15, SNOW_TYPE_INT16}, {16, SNOW_TYPE_UINT16},  {31, SNOW_TYPE_UINT32},
     {32, SNOW_TYPE_INT32}, {64, SNOW_TYPE_FLOAT32}, {65, SNOW_TYPE_FLOAT64},
+    {0, SNOW_TYPE_NONE},
 };
 
 static bool is_marked(const unsigned char *header, bool big) {
@@ -56,10 +55,7 @@ static void place_of_mirtk(const unsigned char *header, bool big,
         axis[0][i] = snow_float_at(header + 106 + 4 * i, big);
         axis[1][i] = snow_float_at(header + 122 + 4 * i, big);
     }
-    for (int i = 0; i < 3; i++) {
-        const int a = (i + 1) % 3, b = (i + 2) % 3;
-        axis[2][i] = axis[0][a] * axis[1][b] - axis[0][b] * axis[1][a];
-    }
+    snow_cross(axis[0], axis[1], axis[2]);
     for (int i = 0; i < 3; i++) {
         info->matrix[i][3] = snow_double_at(header + 204 + 8 * i, big);
         for (int j = 0; j < 3; j++) {
@@ -75,9 +71,7 @@ static snow_status parse(snow_context *context, const unsigned char *header,
                          bool big, snow_volume_info *info) {
     const int code = (int)snow_number_at(header + 8, 2, big);
     bool unknown = false;
-    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-        if (code == types[i].code)
-            info->type = types[i].type;
+    info->type = snow_type_of_code(types, code);
     if (!info->type)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "voxels of GIPL type %d are not supported; convert "

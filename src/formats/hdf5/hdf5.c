@@ -284,21 +284,11 @@ static snow_status read_hdf5(snow_source *source,
 
 #elif SNOW_LOADS && SNOW_HAVE_HDF5
 
-static snow_status read_hdf5(snow_source *source,
-                             const snow_volume_options *options,
-                             snow_volume_info *info, snow_volume **out) {
-    return snow_read_by_module("hdf5", source, options, info, out);
-}
+SNOW_READ_BY_MODULE(read_hdf5, "hdf5")
 
 #else
 
-static snow_status read_hdf5(snow_source *source,
-                             const snow_volume_options *options,
-                             snow_volume_info *info, snow_volume **out) {
-    (void)options, (void)info, (void)out;
-    return snow_fail_unbuilt(snow_source_context(source), "HDF5",
-                             "libhdf5-dev");
-}
+SNOW_READ_UNBUILT(read_hdf5, "HDF5", "libhdf5-dev")
 
 #endif
 

@@ -250,12 +250,7 @@ static snow_status read_pixels(jpeg_reader *reader, int64_t channel,
                              ? decode(reader, channel, region, volume->owned)
                              : SNOW_STATUS_NO_MEMORY;
     snow_release(reader->context, reader->row);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    *out = volume;
-    return SNOW_STATUS_OK;
+    return snow_volume_give(status, volume, out);
 }
 
 static snow_status read_open(jpeg_reader *reader,
@@ -287,15 +282,7 @@ static snow_status read_jpeg(snow_source *source,
 
 #else
 
-static snow_status read_jpeg(snow_source *source,
-                             const snow_volume_options *options,
-                             snow_volume_info *info, snow_volume **out) {
-    (void)options;
-    (void)info;
-    (void)out;
-    return snow_fail_unbuilt(snow_source_context(source), "JPEG",
-                             "libjpeg62-turbo-dev");
-}
+SNOW_READ_UNBUILT(read_jpeg, "JPEG", "libjpeg62-turbo-dev")
 
 #endif
 

@@ -3,7 +3,7 @@
  *   1 255 0 0 1 1 1 "Left kidney"      ITK-SNAP: opacity, visible, mesh
  *   17 Left-Hippocampus 220 216 20 0   FreeSurfer, 3D Slicer: opacity unused
  */
-#include "formats/masked.h"
+#include "formats/opening.h"
 
 #include "io/source.h"
 

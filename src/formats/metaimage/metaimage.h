@@ -2,7 +2,7 @@
 #ifndef SNOW_FORMATS_METAIMAGE_METAIMAGE_H
 #define SNOW_FORMATS_METAIMAGE_METAIMAGE_H
 
-#include "formats/format.h"
+#include "formats/detached/detached.h"
 
 /* Size of a value of the header, including a file's name. */
 #define METAIMAGE_VALUE_BYTES 1024
@@ -12,12 +12,8 @@ typedef struct metaimage_header {
     int axes;         /* NDims, 1 to 4 */
     int64_t dims[4];  /* 1 beyond `axes` */
     int64_t channels; /* values of each voxel */
-    bool text;        /* the voxels are decimal numbers */
-    bool compressed;  /* by zlib or gzip */
-    bool big_endian;
-    int64_t
-        header_size; /* bytes before the voxels; -1: the voxels end the file */
-    char data[METAIMAGE_VALUE_BYTES]; /* ElementDataFile */
+    snow_detached data;
+    char file[METAIMAGE_VALUE_BYTES]; /* ElementDataFile */
 } metaimage_header;
 
 /* True if the bytes begin with a key of MetaImage. */

@@ -21,18 +21,13 @@
 #include <math.h>
 
 #define HEADER_BYTES 284
-#define MOST_SIZE ((int64_t)1 << 31)
 
-static const struct {
-    int code;
-    snow_type type;
-} types[] = {
+static const snow_coded_type types[] = {
     {0, SNOW_TYPE_UINT8}, {1, SNOW_TYPE_INT32},   {3, SNOW_TYPE_FLOAT32},
-    {4, SNOW_TYPE_INT16}, {10, SNOW_TYPE_UINT16},
-};
+    {4, SNOW_TYPE_INT16}, {10, SNOW_TYPE_UINT16}, {0, SNOW_TYPE_NONE}};
 
 static int64_t whole(const unsigned char *header, int at) {
-    return (int64_t)snow_number_at(header + at, 4, true);
+    return snow_integer_at(header + at, 4, true);
 }
 
 /* Sizes from 1, a type that has a code, and a flag. */
@@ -40,9 +35,10 @@ static bool is_header(const unsigned char *bytes) {
     if (bytes[0] || bytes[1] || bytes[3] != 1)
         return false;
     for (int i = 0; i < 4; i++)
-        if (whole(bytes, 4 + 4 * i) < 1 || whole(bytes, 4 + 4 * i) >= MOST_SIZE)
+        if (whole(bytes, 4 + 4 * i) < 1)
             return false;
-    return whole(bytes, 20) <= 10 && snow_number_at(bytes + 28, 2, true) <= 1;
+    return snow_number_at(bytes + 20, 4, true) <= 10 &&
+           snow_number_at(bytes + 28, 2, true) <= 1;
 }
 
 /* Raw data may look so too, but not with zeros behind: those of another name
@@ -102,9 +98,7 @@ static snow_status parse(snow_context *context, const unsigned char *header,
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "the first 284 bytes are not a header of FreeSurfer's "
                          "MGH; get the file again");
-    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-        if (whole(header, 20) == types[i].code)
-            info->type = types[i].type;
+    info->type = snow_type_of_code(types, (int)whole(header, 20));
     if (!info->type)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "voxels of MGH type %d are not supported; types 0, 1, "
@@ -122,34 +116,18 @@ static snow_status read_mgh(snow_source *source,
                             snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
     unsigned char header[HEADER_BYTES];
-    uint64_t steps[4];
     snow_array array = {.big_endian = true, .more = true};
     *info = snow_volume_info_default("mgh");
     SNOW_TRY(snow_source_read_all(source, header, sizeof header, "the header"));
     SNOW_TRY(parse(context, header, info));
     place(context, header, info);
     SNOW_TRY(snow_volume_pick_time(context, "frame", options, info));
-    const int64_t sizes[4] = {info->dims[0], info->dims[1], info->dims[2],
-                              info->times};
-    if (!snow_array_steps(sizes, 4, snow_type_size(info->type), steps,
-                          &array.all))
-        return snow_fail(
-            context, SNOW_STATUS_BAD_INPUT,
-            "its sizes are too large for any file; correct the header");
-    memcpy(array.step, steps, sizeof array.step);
-    array.first = (uint64_t)info->time * steps[3];
+    snow_array_of_volumes(info, 0, &array);
     snow_volume *volume = NULL;
     SNOW_TRY(
         snow_array_read(source, options, &array, info, out ? &volume : NULL));
-    if (!out)
-        return SNOW_STATUS_OK;
-    snow_status status = snow_source_verify(source);
-    if (status != SNOW_STATUS_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    *out = volume;
-    return SNOW_STATUS_OK;
+    return snow_volume_give(out ? snow_source_verify(source) : SNOW_STATUS_OK,
+                            volume, out);
 }
 
 const snow_format snow_format_mgh = {

@@ -21,6 +21,7 @@
  * columns, rows and sections, which supports any order of axes and slanted
  * cells. */
 #include "formats/array.h"
+#include "formats/bytes/number.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -40,27 +41,14 @@ typedef struct mrc_header {
     bool big_endian;
 } mrc_header;
 
-/* A word by its number in the format's description, from 1. */
-static uint32_t word(const mrc_header *header, int number) {
-    const unsigned char *at = header->bytes + 4 * (number - 1);
-    return header->big_endian ? (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 |
-                                    (uint32_t)at[2] << 8 | at[3]
-                              : (uint32_t)at[3] << 24 | (uint32_t)at[2] << 16 |
-                                    (uint32_t)at[1] << 8 | at[0];
-}
-
+/* Words by their numbers in the format's description, from 1. */
 static int32_t whole(const mrc_header *header, int number) {
-    uint32_t bits = word(header, number);
-    int32_t value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
+    return (int32_t)snow_integer_at(header->bytes + 4 * (number - 1), 4,
+                                    header->big_endian);
 }
 
 static double real(const mrc_header *header, int number) {
-    uint32_t bits = word(header, number);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
+    return snow_float_at(header->bytes + 4 * (number - 1), header->big_endian);
 }
 
 /* True if the words that have few valid values have one of them: the sizes and
@@ -100,31 +88,16 @@ static bool probe_mrc(const unsigned char *bytes, size_t size) {
     return has_mode(&header);
 }
 
-static bool parse_mode(const mrc_header *header, snow_volume_info *info,
+static void parse_mode(const mrc_header *header, snow_volume_info *info,
                        snow_coding *coding) {
-    *coding = SNOW_CODING_PLAIN;
-    switch (whole(header, 4)) {
-    case 0:
-        info->type = whole(header, 39) == IMOD_STAMP && !(whole(header, 40) & 1)
-                         ? SNOW_TYPE_UINT8
-                         : SNOW_TYPE_INT8;
-        return true;
-    case 1:
-        info->type = SNOW_TYPE_INT16;
-        return true;
-    case 2:
-        info->type = SNOW_TYPE_FLOAT32;
-        return true;
-    case 6:
-        info->type = SNOW_TYPE_UINT16;
-        return true;
-    case 12:
-        info->type = SNOW_TYPE_FLOAT32;
-        *coding = SNOW_CODING_HALF;
-        return true;
-    default:
-        return false;
-    }
+    static const snow_coded_type modes[] = {
+        {0, SNOW_TYPE_INT8},   {1, SNOW_TYPE_INT16},    {2, SNOW_TYPE_FLOAT32},
+        {6, SNOW_TYPE_UINT16}, {12, SNOW_TYPE_FLOAT32}, {0, SNOW_TYPE_NONE}};
+    const int32_t mode = whole(header, 4);
+    info->type = snow_type_of_code(modes, mode);
+    if (!mode && whole(header, 39) == IMOD_STAMP && !(whole(header, 40) & 1))
+        info->type = SNOW_TYPE_UINT8;
+    *coding = mode == 12 ? SNOW_CODING_HALF : SNOW_CODING_PLAIN;
 }
 
 /* Where the number of intervals along an axis is missing, the cell is that of
@@ -276,7 +249,8 @@ static snow_status parse_header(snow_context *context, const mrc_header *header,
                          "11 11: big)",
                          header->big_endian ? "little" : "big",
                          header->big_endian ? "big" : "little");
-    if (!parse_mode(header, info, &array->coding))
+    parse_mode(header, info, &array->coding);
+    if (!info->type)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "voxels of MRC mode %d are not supported; modes 0, 1, "
                          "2, 6 and 12 are, so convert it to one of them",
@@ -306,22 +280,14 @@ static snow_status read_mrc(snow_source *source,
                             snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
     unsigned char bytes[HEADER_BYTES];
-    uint64_t extended = 0, steps[4];
+    uint64_t extended = 0;
     snow_array array = {0};
     *info = snow_volume_info_default("mrc");
     SNOW_TRY(snow_source_read_all(source, bytes, sizeof bytes, "the header"));
     const mrc_header header = header_of(bytes);
     SNOW_TRY(parse_header(context, &header, options, info, &array, &extended));
     SNOW_TRY(snow_volume_pick_time(context, "volume", options, info));
-    const int64_t sizes[4] = {info->dims[0], info->dims[1], info->dims[2],
-                              info->times};
-    if (!snow_array_steps(sizes, 4, snow_coding_size(array.coding, info->type),
-                          steps, &array.all))
-        return snow_fail(
-            context, SNOW_STATUS_BAD_INPUT,
-            "its sizes are too large for any file; correct the header");
-    memcpy(array.step, steps, sizeof array.step);
-    array.first = (uint64_t)info->time * steps[3];
+    snow_array_of_volumes(info, 0, &array);
     /* Copies of a header may speak of an extended one that was not copied. */
     if (extended && snow_source_remaining(source) == (int64_t)array.all) {
         snow_notify(context,

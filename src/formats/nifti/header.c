@@ -3,114 +3,61 @@
  * A pure function on bytes.  The first field is the header's size, 348 or 540,
  * which gives version and byte order; the magic confirms it.  Offsets are those
  * of nifti1.h and nifti2.h. */
+#include "formats/bytes/number.h"
 #include "formats/nifti/nifti.h"
 
 #include <math.h>
 #include <string.h>
 
-/* X(code, scalar type): the types that a volume can have. */
-#define TYPE_MAP(X) \
-    X(2, UINT8)     \
-    X(4, INT16)     \
-    X(8, INT32)     \
-    X(16, FLOAT32)  \
-    X(64, FLOAT64)  \
-    X(256, INT8)    \
-    X(512, UINT16)  \
-    X(768, UINT32)  \
-    X(1024, INT64)  \
-    X(1280, UINT64)
+/* The names are those of refusals. */
+static const nifti_type types[] = {
+    {2, SNOW_TYPE_UINT8, 1, NULL},
+    {4, SNOW_TYPE_INT16, 1, NULL},
+    {8, SNOW_TYPE_INT32, 1, NULL},
+    {16, SNOW_TYPE_FLOAT32, 1, NULL},
+    {64, SNOW_TYPE_FLOAT64, 1, NULL},
+    {256, SNOW_TYPE_INT8, 1, NULL},
+    {512, SNOW_TYPE_UINT16, 1, NULL},
+    {768, SNOW_TYPE_UINT32, 1, NULL},
+    {1024, SNOW_TYPE_INT64, 1, NULL},
+    {1280, SNOW_TYPE_UINT64, 1, NULL},
+    {32, SNOW_TYPE_FLOAT32, 2, NULL},
+    {1792, SNOW_TYPE_FLOAT64, 2, NULL},
+    {128, SNOW_TYPE_UINT8, 3, NULL},
+    {2304, SNOW_TYPE_UINT8, 4, NULL},
+    {1, SNOW_TYPE_NONE, 1, "single bits"},
+    {1536, SNOW_TYPE_NONE, 1, "128-bit floats"},
+    {2048, SNOW_TYPE_NONE, 2, "complex numbers (2 x 128 bits)"},
+    {0, SNOW_TYPE_NONE, 0, NULL},
+};
 
-snow_type nifti_type(int datatype) {
-    switch (datatype) {
-    case 128:
-    case 2304:
-        return SNOW_TYPE_UINT8;
-    case 32:
-        return SNOW_TYPE_FLOAT32;
-    case 1792:
-        return SNOW_TYPE_FLOAT64;
-#define TO_TYPE(code, name) \
-    case code:              \
-        return SNOW_TYPE_##name;
-        TYPE_MAP(TO_TYPE)
-#undef TO_TYPE
-    default:
-        return SNOW_TYPE_NONE;
-    }
+const nifti_type *nifti_type_of_code(int code) {
+    const nifti_type *at = types;
+    while (at->samples && at->code != code)
+        at++;
+    return at;
 }
 
-/* RGB24, RGBA32 and complex numbers. */
-int nifti_samples(int datatype) {
-    if (datatype == 32 || datatype == 1792)
-        return 2;
-    return datatype == 128 ? 3 : datatype == 2304 ? 4 : 1;
-}
-
+/* The first of a type has one sample. */
 int nifti_code(snow_type type) {
-#define TO_CODE(code, name)       \
-    if (type == SNOW_TYPE_##name) \
-        return code;
-    TYPE_MAP(TO_CODE)
-#undef TO_CODE
-    return 0;
-}
-
-/* Codes of nifti1.h that are not supported; named in refusals. */
-const char *nifti_type_name(int datatype) {
-    switch (datatype) {
-    case 1:
-        return "single bits";
-    case 1536:
-        return "128-bit floats";
-    case 2048:
-        return "complex numbers (2 x 128 bits)";
-    default:
-        return NULL;
-    }
-}
-
-/* The unsigned number of `size` bytes at `at`. */
-static uint64_t number_at(const unsigned char *at, size_t size, bool big) {
-    uint64_t value = 0;
-    for (size_t i = 0; i < size; i++)
-        value = value << 8 | at[big ? i : size - 1 - i];
-    return value;
-}
-
-static int64_t int_at(const unsigned char *at, size_t size, bool big) {
-    uint64_t value = number_at(at, size, big);
-    uint64_t sign = UINT64_C(1) << (8 * size - 1);
-    /* Two's complement of any width: the sign bit counts negative. */
-    return value & sign ? -(int64_t)(sign - 1 - (value & (sign - 1))) - 1
-                        : (int64_t)value;
-}
-
-static double float_at(const unsigned char *at, size_t size, bool big) {
-    uint64_t bits = number_at(at, size, big);
-    if (size == sizeof(double)) {
-        double value;
-        memcpy(&value, &bits, sizeof value);
-        return value;
-    }
-    uint32_t half = (uint32_t)bits;
-    float value;
-    memcpy(&value, &half, sizeof value);
-    return value;
+    const nifti_type *at = types;
+    while (at->type != type)
+        at++;
+    return at->code;
 }
 
 /* True if the first field is this size in either byte order, which *big
  * gives. */
 static bool has_size(const unsigned char *bytes, uint64_t size, bool *big) {
-    *big = number_at(bytes, 4, true) == size;
-    return *big || number_at(bytes, 4, false) == size;
+    *big = snow_number_at(bytes, 4, true) == size;
+    return *big || snow_number_at(bytes, 4, false) == size;
 }
 
 /* The byte order in which dim[0] is a number of axes, for headers whose first
  * field is wrong.  Returns false if there is none. */
 static bool order_of_dim(const unsigned char *bytes, bool *big) {
     for (int order = 0; order < 2; order++) {
-        int64_t axes = int_at(bytes + 40, 2, order);
+        int64_t axes = snow_integer_at(bytes + 40, 2, order);
         if (axes >= 1 && axes <= 7) {
             *big = order;
             return true;
@@ -148,43 +95,39 @@ size_t nifti_header_size(const unsigned char *bytes, size_t size) {
 #define INTENT_RGB 2003
 #define INTENT_RGBA 2004
 
-/* The offsets and widths of a version's fields. */
-typedef struct nifti_layout {
-    size_t float_bytes, dim_bytes, code_bytes;
-    size_t datatype, bitpix, dim, pixdim, slope, intercept, units, units_bytes;
-    size_t cal_max, cal_min, intent, descrip, qform_code, sform_code, quatern,
-        qoffset, srow;
-} nifti_layout;
-
 /* In the order of the members above, from the comments of nifti1.h and
  * nifti2.h; version 2 widens most fields and moves all. */
-static const nifti_layout layouts[] = {
+const nifti_layout nifti_layouts[2] = {
     {4, 2,   2,   70, 72,  40,  76,  112, 116, 123,
      1, 124, 128, 68, 148, 252, 254, 256, 268, 280},
     {8, 8,   4,   12,  14,  16,  104, 176, 184, 500,
      4, 192, 200, 504, 240, 344, 348, 352, 376, 400},
 };
 
-static void read_floats(const unsigned char *at, size_t count,
+static void read_floats(const unsigned char *at, int count,
                         const nifti_layout *layout, bool big, double *out) {
-    for (size_t i = 0; i < count; i++)
-        out[i] =
-            float_at(at + i * layout->float_bytes, layout->float_bytes, big);
+    for (int i = 0; i < count; i++)
+        out[i] = snow_real_at(at + i * layout->float_bytes, layout->float_bytes,
+                              big);
 }
 
 /* xyzt_units holds two units: bits 0 to 2 are that of length. */
 static void read_fields(const unsigned char *bytes, nifti_header *header) {
-    const nifti_layout *l = &layouts[header->version - 1];
+    const nifti_layout *l = &nifti_layouts[header->version - 1];
     bool big = header->big_endian;
-    for (size_t i = 0; i < 8; i++)
-        header->dim[i] =
-            int_at(bytes + l->dim + i * l->dim_bytes, l->dim_bytes, big);
-    header->datatype = (int)int_at(bytes + l->datatype, 2, big);
-    header->bitpix = (int)int_at(bytes + l->bitpix, 2, big);
-    header->units = (int)(number_at(bytes + l->units, l->units_bytes, big) & 7);
-    header->qform_code = (int)int_at(bytes + l->qform_code, l->code_bytes, big);
-    header->sform_code = (int)int_at(bytes + l->sform_code, l->code_bytes, big);
-    const int64_t intent = int_at(bytes + l->intent, l->code_bytes, big);
+    for (int i = 0; i < 8; i++)
+        header->dim[i] = snow_integer_at(bytes + l->dim + i * l->dim_bytes,
+                                         l->dim_bytes, big);
+    header->datatype = (int)snow_integer_at(bytes + l->datatype, 2, big);
+    header->bitpix = (int)snow_integer_at(bytes + l->bitpix, 2, big);
+    header->units =
+        (int)(snow_number_at(bytes + l->units, l->units_bytes, big) & 7);
+    header->qform_code =
+        (int)snow_integer_at(bytes + l->qform_code, l->code_bytes, big);
+    header->sform_code =
+        (int)snow_integer_at(bytes + l->sform_code, l->code_bytes, big);
+    const int64_t intent =
+        snow_integer_at(bytes + l->intent, l->code_bytes, big);
     header->labels = intent == INTENT_LABEL;
     header->estimate =
         intent == INTENT_ESTIMATE ||
@@ -217,8 +160,9 @@ static snow_status read_offset(snow_context *context,
                                nifti_header *header) {
     bool first = header->version == 1;
     uint64_t least = first ? NIFTI1_BYTES : NIFTI2_BYTES;
-    double given = first ? float_at(bytes + 108, 4, header->big_endian)
-                         : (double)int_at(bytes + 168, 8, header->big_endian);
+    double given =
+        first ? snow_float_at(bytes + 108, header->big_endian)
+              : (double)snow_integer_at(bytes + 168, 8, header->big_endian);
     /* In a single file with an offset the voxels follow the extender, or
      * directly the header if a writer omitted the extender.  An offset inside
      * the extender would shift them by a few bytes, unnoticed. */
@@ -232,7 +176,7 @@ static snow_status read_offset(snow_context *context,
                          given);
     header->vox_offset =
         first ? (uint64_t)given
-              : (uint64_t)int_at(bytes + 168, 8, header->big_endian);
+              : (uint64_t)snow_integer_at(bytes + 168, 8, header->big_endian);
     if (!header->pair && header->vox_offset == 0)
         header->vox_offset = least + NIFTI_EXTENDER_BYTES;
     return SNOW_STATUS_OK;
@@ -259,28 +203,26 @@ static snow_status check_dims(snow_context *context, nifti_header *header) {
 
 /* bitpix repeats the type, which counts, as in nibabel and ITK; some programs
  * leave 0 or the bits of another type there. */
-static snow_status check_type(snow_context *context,
-                              const nifti_header *header) {
-    snow_type type = nifti_type(header->datatype);
-    const char *name = nifti_type_name(header->datatype);
-    if (type == SNOW_TYPE_NONE && name)
+static snow_status check_type(snow_context *context, nifti_header *header) {
+    const nifti_type *type = nifti_type_of_code(header->datatype);
+    if (type->name)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "voxels that are %s are not supported; convert them "
                          "to one number each",
-                         name);
-    if (type == SNOW_TYPE_NONE)
+                         type->name);
+    if (!type->type)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
             "data type %d is unknown; NIfTI's types are 2, 4, 8, "
             "16, 32, 64, 128, 256, 512, 768, 1024, 1280, 1792 and 2304",
             header->datatype);
-    const int bits =
-        8 * nifti_samples(header->datatype) * (int)snow_type_size(type);
+    const int bits = 8 * type->samples * (int)snow_type_size(type->type);
+    header->type = type;
     if (header->bitpix && header->bitpix != bits)
         snow_notify(context,
                     "claims %d bits per voxel (bitpix) but type %s (datatype); "
                     "the type is taken",
-                    header->bitpix, snow_type_name(type));
+                    header->bitpix, snow_type_name(type->type));
     return SNOW_STATUS_OK;
 }
 

@@ -9,7 +9,6 @@
  * right. */
 #include "formats/nifti/nifti.h"
 #include "formats/array.h"
-#include "formats/write.h"
 #include "io/folder.h"
 
 #include <math.h>
@@ -22,6 +21,133 @@ static bool probe_nifti(const unsigned char *bytes, size_t size) {
     return nifti_header_size(bytes, size) != 0;
 }
 
+/* --- the position in the world --------------------------------------------
+ *
+ * nifti1.h has three methods: sform, a matrix; qform, a rotation as a
+ * quaternion with spacings; or spacings alone.  The first one that is given and
+ * valid is used.  World axes are RAS+, as ours. */
+
+/* A singular matrix would draw nothing, and its inverse is needed. */
+static bool is_usable(const double m[4][4]) {
+    double inverse[3][3];
+    for (int i = 0; i < 12; i++)
+        if (!isfinite(m[i / 4][i % 4]))
+            return false;
+    return snow_matrix_invert3(m, inverse);
+}
+
+/* Spacings that are not lengths become 1 with a warning: such files are common.
+ * The sign has no meaning here; qfac marks mirrored axes. */
+static void read_spacing(snow_context *context, const nifti_header *header,
+                         const snow_volume_options *options,
+                         double spacing[3]) {
+    bool replaced = false;
+    for (int i = 0; i < 3; i++) {
+        spacing[i] = fabs(header->pixdim[i + 1]);
+        if (spacing[i] > 0 && isfinite(spacing[i]))
+            continue;
+        spacing[i] = 1;
+        replaced |= header->dim[i + 1] > 1;
+    }
+    if (replaced && !snow_spacing_given(options))
+        snow_notify(context,
+                    "spacing %g %g %g (pixdim) is not possible; 1 is used "
+                    "where it is wrong",
+                    header->pixdim[1], header->pixdim[2], header->pixdim[3]);
+}
+
+/* The rotation of the quaternion (a, b, c, d) with implied a >= 0: nifti1.h,
+ * section "QUATERNION REPRESENTATION OF ROTATION MATRIX".  Rounding may make b,
+ * c, d a little too long; then a is 0 and they are scaled to length 1. */
+static void rotate_by_quaternion(const double quatern[3], double r[3][3]) {
+    double b = quatern[0], c = quatern[1], d = quatern[2];
+    double square = b * b + c * c + d * d, a = 0;
+    if (1 - square < 1e-7) {
+        double length = sqrt(square);
+        b /= length;
+        c /= length;
+        d /= length;
+    } else {
+        a = sqrt(1 - square);
+    }
+    const double rotation[3][3] = {
+        {a * a + b * b - c * c - d * d, 2 * (b * c - a * d),
+         2 * (b * d + a * c)},
+        {2 * (b * c + a * d), a * a + c * c - b * b - d * d,
+         2 * (c * d - a * b)},
+        {2 * (b * d - a * c), 2 * (c * d + a * b),
+         a * a + d * d - b * b - c * c},
+    };
+    memcpy(r, rotation, sizeof rotation);
+}
+
+/* nifti1.h, method 3; code 0 means that its fields are not set. */
+static bool try_sform(snow_context *context, const nifti_header *header,
+                      double m[4][4]) {
+    if (header->sform_code <= 0)
+        return false;
+    memcpy(m, header->srow, sizeof header->srow);
+    if (is_usable((const double(*)[4])m))
+        return true;
+    snow_notify(context, "its matrix (sform) is singular or not finite; %s",
+                header->qform_code > 0 ? "its quaternion (qform) is used"
+                                       : "only its spacing is used");
+    return false;
+}
+
+/* nifti1.h, method 2, likewise. */
+static bool try_qform(snow_context *context, const nifti_header *header,
+                      const double spacing[3], double m[4][4]) {
+    if (header->qform_code <= 0)
+        return false;
+    /* nifti1.h, method 2: the third column takes the sign that mirrors. */
+    double r[3][3];
+    rotate_by_quaternion(header->quatern, r);
+    double qfac = header->pixdim[0] < 0 ? -1 : 1;
+    for (int i = 0; i < 3; i++) {
+        m[i][0] = r[i][0] * spacing[0];
+        m[i][1] = r[i][1] * spacing[1];
+        m[i][2] = r[i][2] * spacing[2] * qfac;
+        m[i][3] = header->qoffset[i];
+    }
+    if (is_usable((const double(*)[4])m))
+        return true;
+    snow_notify(context, "its quaternion (qform) is not finite; only its "
+                         "spacing is used");
+    return false;
+}
+
+/* Spacings alone (method 1) give no orientation: left and right are unknown, so
+ * the volume is not medical. */
+static void read_geometry(snow_context *context, const nifti_header *header,
+                          const snow_volume_options *options,
+                          snow_volume_info *info) {
+    /* Metres and micrometres; an unknown unit counts as millimetres. */
+    const double millimetres = header->units == 1   ? 1000
+                               : header->units == 3 ? 0.001
+                                                    : 1;
+    double m[4][4] = {{0}};
+    bool placed = try_sform(context, header, m);
+    if (!placed) {
+        double spacing[3];
+        read_spacing(context, header, options, spacing);
+        placed = try_qform(context, header, spacing, m);
+        if (!placed) {
+            memset(m, 0, sizeof m);
+            for (int i = 0; i < 3; i++)
+                m[i][i] = spacing[i];
+        }
+    }
+    for (int i = 0; i < 12; i++)
+        info->matrix[i / 4][i % 4] =
+            m[i / 4][i % 4] * millimetres + 0.0; /* no -0 */
+    info->medical = placed && !header->no_patient;
+    bool unknown = header->no_patient && header->units == 0;
+    snprintf(info->unit, sizeof info->unit, "%s", unknown ? "" : "mm");
+}
+
+/* --- voxels --------------------------------------------------------------- */
+
 /* Fills info from the header; the sizes of the array are samples of a voxel, x,
  * y, z, time and components. */
 static void describe_volume(const nifti_header *header, snow_context *context,
@@ -29,13 +155,13 @@ static void describe_volume(const nifti_header *header, snow_context *context,
                             snow_volume_info *info, int64_t sizes[6]) {
     *info = snow_volume_info_default("nifti");
     memcpy(info->dims, header->dim + 1, sizeof info->dims);
-    info->type = nifti_type(header->datatype);
+    info->type = header->type->type;
     info->slope = header->slope;
     info->intercept = header->intercept;
     info->whole = header->labels;
     info->estimate = header->estimate;
-    nifti_geometry(context, header, options, info);
-    sizes[0] = nifti_samples(header->datatype);
+    read_geometry(context, header, options, info);
+    sizes[0] = header->type->samples;
     if (isfinite(header->cal_min) && isfinite(header->cal_max) &&
         header->cal_max > header->cal_min && !header->labels &&
         !header->vectors && !header->colors && sizes[0] == 1)
@@ -83,26 +209,21 @@ static snow_status read_voxels(snow_source *source, const nifti_header *header,
                                snow_volume **out) {
     snow_context *context = snow_source_context(source);
     const uint64_t skip = header->vox_offset - taken;
+    snow_array array = {.big_endian = header->big_endian};
     int64_t sizes[6], channel = 0;
-    uint64_t steps[6], all;
+    uint64_t steps[6];
     describe_volume(header, context, options, info, sizes);
-    const uint64_t size = snow_type_size(info->type);
-    if (!snow_array_steps(sizes, 6, size, steps, &all))
+    if (!snow_array_steps(sizes, 6, snow_type_size(info->type), steps,
+                          &array.all))
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
             "its sizes (dim) are too large for any file; correct the header");
     SNOW_TRY(pick(header, context, options, sizes, info, &channel));
-    if (info->channels <= 1 && info->components <= 1) {
-        SNOW_TRY(snow_volume_read(source, options, header->big_endian, skip,
-                                  info, out));
-    } else {
-        snow_array array = {.big_endian = header->big_endian, .all = all};
-        memcpy(array.step, steps + 1, sizeof array.step);
-        array.first = (uint64_t)info->time * steps[4] +
-                      (uint64_t)channel * steps[sizes[0] > 1 ? 0 : 5];
-        SNOW_TRY(snow_source_skip(source, skip, "the voxels"));
-        SNOW_TRY(snow_array_read(source, options, &array, info, out));
-    }
+    memcpy(array.step, steps + 1, sizeof array.step);
+    array.all += skip;
+    array.first = skip + (uint64_t)info->time * steps[4] +
+                  (uint64_t)channel * steps[sizes[0] > 1 ? 0 : 5];
+    SNOW_TRY(snow_array_read(source, options, &array, info, out));
     return out && header->labels ? snow_volume_set_labels(*out, NULL, 0)
                                  : SNOW_STATUS_OK;
 }
@@ -121,17 +242,11 @@ static snow_status read_header(snow_source *source, nifti_header *header,
 
 /* Finds "hdr" or "img" in a name, or NULL: "a.hdr", "a.IMG.gz". */
 static char *pair_letters(char *name) {
-    size_t length = strlen(name);
-    if (snow_has_suffix(name, ".gz"))
-        length -= 3;
-    if (length < 4)
-        return NULL;
-    char saved = name[length];
-    name[length] = 0;
-    bool is_pair =
-        snow_has_suffix(name, ".hdr") || snow_has_suffix(name, ".img");
-    name[length] = saved;
-    return is_pair ? name + length - 3 : NULL;
+    static const char *const ends[] = {".hdr", ".img", ".hdr.gz", ".img.gz"};
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+        if (snow_has_suffix(name, ends[i]))
+            return name + strlen(name) - strlen(ends[i]) + 1;
+    return NULL;
 }
 
 /* Opens the other file of a pair: same name and case, `wanted` ("hdr" or "img")

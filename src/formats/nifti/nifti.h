@@ -6,9 +6,8 @@
 
 #include "formats/format.h"
 
-#define NIFTI1_BYTES                                         \
-    348 /* size of the header, which its first field repeats \
-         */
+/* Sizes of the headers, which their first fields repeat. */
+#define NIFTI1_BYTES 348
 #define NIFTI2_BYTES 540
 /* The smallest offset of the voxels in a single file: four bytes after the
  * header say whether extensions follow. */
@@ -18,12 +17,36 @@
  * orientation, which the format cannot express. */
 #define NIFTI_NO_PATIENT "no patient's axes"
 
+/* A data type of the format. */
+typedef struct nifti_type {
+    int code;
+    snow_type type;   /* SNOW_TYPE_NONE: not supported; */
+    int samples;      /* of a voxel: 3 and 4 of colours, 2 of complex numbers */
+    const char *name; /* of those that are not supported; NULL: unknown */
+} nifti_type;
+
+const nifti_type *nifti_type_of_code(int code);
+
+/* The format's code of a scalar type. */
+int nifti_code(snow_type type);
+
+/* The offsets and widths of a version's fields. */
+typedef struct nifti_layout {
+    int float_bytes, dim_bytes, code_bytes;
+    int datatype, bitpix, dim, pixdim, slope, intercept, units, units_bytes;
+    int cal_max, cal_min, intent, descrip, qform_code, sform_code, quatern,
+        qoffset, srow;
+} nifti_layout;
+
+extern const nifti_layout nifti_layouts[2];
+
 typedef struct nifti_header {
     int version; /* 1 or 2 */
     bool big_endian;
     bool pair; /* the voxels are in a file of their own (.img) */
     int64_t dim[8];
     int datatype, bitpix;
+    const nifti_type *type;
     bool labels, vectors, estimate; /* intent_code says that values are */
     bool colors;                    /* of single channels: red, green, blue */
     double pixdim[8]; /* [0] is qfac, the sign of the third axis */
@@ -47,15 +70,8 @@ snow_status nifti_header_parse(snow_context *context,
                                const unsigned char *bytes, size_t size,
                                nifti_header *out);
 
-/* Sets matrix, unit and `medical` of info from the header. */
-void nifti_geometry(snow_context *context, const nifti_header *header,
-                    const snow_volume_options *options, snow_volume_info *info);
-
-/* The format's code of a scalar type and the inverse; 0 and SNOW_TYPE_NONE if
- * there is none.  The name of a code that is not a scalar, NULL if unknown. */
-int nifti_code(snow_type type);
-snow_type nifti_type(int datatype);
-int nifti_samples(int datatype); /* of a voxel: 3 and 4 of colours, else 1 */
-const char *nifti_type_name(int datatype);
+/* Writes as a snow_format does. */
+snow_status snow_nifti_write(const snow_volume *volume, const char *path,
+                             snow_writer *writer);
 
 #endif

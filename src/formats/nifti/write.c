@@ -15,19 +15,19 @@
 /* A header under construction. */
 typedef struct header {
     unsigned char bytes[NIFTI2_BYTES + NIFTI_EXTENDER_BYTES];
-    size_t float_bytes;
+    const nifti_layout *layout;
 } header;
 
 /* Low byte first, as formats/write.h promises for all formats. */
-static void put_int(header *h, size_t at, size_t size, uint64_t value) {
-    for (size_t i = 0; i < size; i++)
+static void put_int(header *h, int at, int size, uint64_t value) {
+    for (int i = 0; i < size; i++)
         h->bytes[at + i] = (unsigned char)(value >> (8 * i));
 }
 
 /* In the width of the version: 4 bytes in NIfTI-1, 8 in NIfTI-2. */
-static void put_float(header *h, size_t at, double value) {
+static void put_float(header *h, int at, double value) {
     uint64_t bits;
-    if (h->float_bytes == sizeof(double)) {
+    if (h->layout->float_bytes == 8) {
         memcpy(&bits, &value, sizeof bits);
     } else {
         float narrow = (float)value;
@@ -35,7 +35,7 @@ static void put_float(header *h, size_t at, double value) {
         memcpy(&half, &narrow, sizeof half);
         bits = half;
     }
-    put_int(h, at, h->float_bytes, bits);
+    put_int(h, at, h->layout->float_bytes, bits);
 }
 
 /* True if single precision can represent the number with its usual accuracy. */
@@ -65,37 +65,28 @@ static bool is_spacing_only(const snow_volume_info *info) {
 
 /* NIfTI's code of a unit of length; 0 if it has none. */
 static unsigned unit_code(const char *unit) {
-    if (strcmp(unit, "mm") == 0)
-        return 2;
-    if (strcmp(unit, "m") == 0)
-        return 1;
-    if (strcmp(unit, "um") == 0)
-        return 3;
-    return 0;
+    return !strcmp(unit, "m")    ? 1
+           : !strcmp(unit, "mm") ? 2
+           : !strcmp(unit, "um") ? 3
+                                 : 0;
 }
-
-/* The offsets of the fields that are written. */
-typedef struct places {
-    size_t dim, dim_bytes, pixdim, datatype, slope, units, descrip, sform_code;
-    size_t code_bytes, srow;
-} places;
 
 /* Offsets of pixdim and dim count from entry 0, which is qfac and the number of
  * axes. */
-static void put_fields(header *h, const places *p,
-                       const snow_volume_info *info) {
+static void put_fields(header *h, const snow_volume_info *info) {
+    const nifti_layout *p = h->layout;
     put_int(h, p->dim, p->dim_bytes, 3);
     put_float(h, p->pixdim, 1); /* qfac */
-    for (size_t i = 0; i < 7; i++) {
+    for (int i = 0; i < 7; i++) {
         put_int(h, p->dim + (i + 1) * p->dim_bytes, p->dim_bytes,
                 i < 3 ? (uint64_t)info->dims[i] : 1);
-        put_float(h, p->pixdim + (i + 1) * h->float_bytes,
+        put_float(h, p->pixdim + (i + 1) * p->float_bytes,
                   i < 3 ? info->spacing[i] : 1);
     }
     put_int(h, p->datatype, 2, (uint64_t)nifti_code(info->type));
     put_int(h, p->datatype + 2, 2, 8 * snow_type_size(info->type));
     put_float(h, p->slope, info->slope);
-    put_float(h, p->slope + h->float_bytes, info->intercept);
+    put_float(h, p->intercept, info->intercept);
     put_int(h, p->units, 1, unit_code(info->unit));
     /* A file with a matrix is read as a patient's. */
     uint64_t code = info->medical ? 1 : is_spacing_only(info) ? 0 : 2;
@@ -103,28 +94,26 @@ static void put_fields(header *h, const places *p,
         memcpy(h->bytes + p->descrip, NIFTI_NO_PATIENT,
                sizeof NIFTI_NO_PATIENT);
     put_int(h, p->sform_code, p->code_bytes, code);
-    for (size_t i = 0; i < 12 && code; i++)
-        put_float(h, p->srow + i * h->float_bytes, info->matrix[i / 4][i % 4]);
+    for (int i = 0; i < 12 && code; i++)
+        put_float(h, p->srow + i * p->float_bytes, info->matrix[i / 4][i % 4]);
 }
 
 /* Fills the header; returns its size, including the extender. */
 static size_t fill_version1(header *h, const snow_volume_info *info) {
-    static const places p = {40, 2, 76, 70, 112, 123, 148, 254, 2, 280};
-    h->float_bytes = sizeof(float);
+    h->layout = &nifti_layouts[0];
     put_int(h, 0, 4, NIFTI1_BYTES);
     put_int(h, 38, 1, 'r'); /* "regular", for readers of Analyze's time */
-    put_fields(h, &p, info);
+    put_fields(h, info);
     put_float(h, 108, NIFTI1_BYTES + NIFTI_EXTENDER_BYTES);
     memcpy(h->bytes + 344, "n+1", 4);
     return NIFTI1_BYTES + NIFTI_EXTENDER_BYTES;
 }
 
 static size_t fill_version2(header *h, const snow_volume_info *info) {
-    static const places p = {16, 8, 104, 12, 176, 500, 240, 348, 4, 400};
-    h->float_bytes = sizeof(double);
+    h->layout = &nifti_layouts[1];
     put_int(h, 0, 4, NIFTI2_BYTES);
     memcpy(h->bytes + 4, "n+2\0\r\n\032\n", 8);
-    put_fields(h, &p, info);
+    put_fields(h, info);
     put_int(h, 168, 8, NIFTI2_BYTES + NIFTI_EXTENDER_BYTES);
     return NIFTI2_BYTES + NIFTI_EXTENDER_BYTES;
 }

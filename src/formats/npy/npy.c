@@ -12,40 +12,17 @@
 #include "formats/write.h"
 #include "io/npy_header.h"
 
+#include <stdio.h>
 #include <string.h>
 
-/* NumPy's letters and sizes; the byte order stands before them. */
-static const struct {
-    const char *name;
-    snow_type type;
-    snow_coding coding;
-} types[] = {
-    {"i1", SNOW_TYPE_INT8, SNOW_CODING_PLAIN},
-    {"u1", SNOW_TYPE_UINT8, SNOW_CODING_PLAIN},
-    {"i2", SNOW_TYPE_INT16, SNOW_CODING_PLAIN},
-    {"u2", SNOW_TYPE_UINT16, SNOW_CODING_PLAIN},
-    {"i4", SNOW_TYPE_INT32, SNOW_CODING_PLAIN},
-    {"u4", SNOW_TYPE_UINT32, SNOW_CODING_PLAIN},
-    {"i8", SNOW_TYPE_INT64, SNOW_CODING_PLAIN},
-    {"u8", SNOW_TYPE_UINT64, SNOW_CODING_PLAIN},
-    {"f2", SNOW_TYPE_FLOAT32, SNOW_CODING_HALF},
-    {"f4", SNOW_TYPE_FLOAT32, SNOW_CODING_PLAIN},
-    {"f8", SNOW_TYPE_FLOAT64, SNOW_CODING_PLAIN},
-    {"b1", SNOW_TYPE_UINT8, SNOW_CODING_BOOL},
-};
-
 /* "<f4", ">i2", "|u1"; "=" is the order of an unknown machine. */
-static bool parse_type(const char *text, snow_type *type, snow_array *array) {
-    if (!*text || !strchr("<>|", *text))
-        return false;
-    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-        if (!strcmp(text + 1, types[i].name)) {
-            *type = types[i].type;
-            array->coding = types[i].coding;
-            array->big_endian = *text == '>';
-            return true;
-        }
-    return false;
+static snow_type parse_type(const char *text, snow_array *array) {
+    const size_t length = strlen(text);
+    array->big_endian = *text == '>';
+    return length == 3 && strchr("<>|", *text)
+               ? snow_numpy_type(text[1], (size_t)(text[2] - '0'),
+                                 &array->coding)
+               : SNOW_TYPE_NONE;
 }
 
 /* Sizes and strides by meaning: x, y, z, then channel or time; missing axes
@@ -96,7 +73,8 @@ static snow_status read_npy(snow_source *source,
     *info = snow_volume_info_default("npy");
     SNOW_TRY(refuse_archive(source));
     SNOW_TRY(snow_npy_read_header(source, &header));
-    if (!parse_type(header.type, &info->type, &array))
+    info->type = parse_type(header.type, &array);
+    if (!info->type)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "values of the NumPy type \"%s\" are not supported; "
                          "save the array with .astype('float32')",
@@ -123,6 +101,61 @@ static snow_status read_npy(snow_source *source,
     return snow_array_read(source, options, &array, info, out);
 }
 
+/* --- writing, of shape (z, y, x), C order, version 1 -----------------------
+ */
+
+/* Our names of types begin with NumPy's letters.  Padded with blanks, so that
+ * the values are aligned for mapping. */
+static size_t print_header(const snow_volume_info *info, char *text,
+                           size_t capacity) {
+    size_t size = snow_type_size(info->type);
+    int used = snprintf(
+        text + 10, capacity - 10,
+        "{'descr': '%c%c%zu', 'fortran_order': False, 'shape': (%lld, %lld, "
+        "%lld), }",
+        size > 1 ? '<' : '|', *snow_type_name(info->type), size,
+        (long long)info->dims[2], (long long)info->dims[1],
+        (long long)info->dims[0]);
+    size_t all = 10 + (size_t)used + 1;
+    all = (all + NPY_ALIGNMENT - 1) / NPY_ALIGNMENT * NPY_ALIGNMENT;
+    memset(text + 10 + used, ' ', all - 10 - (size_t)used);
+    text[all - 1] = '\n';
+    memcpy(text, "\x93NUMPY\x01\x00", 8);
+    text[8] = (char)((all - 10) & 0xff);
+    text[9] = (char)((all - 10) >> 8);
+    return all;
+}
+
+/* Returns whether axes are rotated, mirrored, or medical. */
+static bool is_oriented(const snow_volume_info *info) {
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 3; column++)
+            if (row == column ? !(info->matrix[row][column] > 0)
+                              : info->matrix[row][column] != 0)
+                return true;
+    return info->medical;
+}
+
+static snow_status write_npy(const snow_volume *volume, const char *path,
+                             snow_writer *writer) {
+    const snow_volume_info *info = &volume->info;
+    char text[512];
+    size_t used = print_header(info, text, sizeof text);
+    SNOW_TRY(snow_writer_write(writer, text, used));
+    SNOW_TRY(snow_write_voxels(volume, writer));
+    const double *spacing = info->spacing;
+    bool oriented = is_oriented(info);
+    if (oriented || spacing[0] != 1 || spacing[1] != 1 || spacing[2] != 1)
+        snow_notify(volume->context,
+                    "%s: NumPy arrays do not hold the geometry; open it with "
+                    "--spacing %gx%gx%g%s",
+                    path, spacing[0], spacing[1], spacing[2],
+                    oriented ? ", and its orientation is lost: write .nrrd or "
+                               ".nii to keep it"
+                             : "");
+    return SNOW_STATUS_OK;
+}
+
 const snow_format snow_format_npy = {
     .name = "npy",
     .text = "NumPy arrays (.npy)",
@@ -131,5 +164,5 @@ const snow_format snow_format_npy = {
     .crops = true,
     .channels = true,
     .read = read_npy,
-    .write = snow_npy_write,
+    .write = write_npy,
 };

@@ -8,6 +8,7 @@
  *
  *   sizes 1 64 64 20 5, kinds stub domain domain domain time
  *         -  x  y  z t */
+#include "base/vec3.h"
 #include "formats/nrrd/nrrd.h"
 #include "volume/length_unit.h"
 
@@ -55,29 +56,28 @@ static bool are_colors(const nrrd_header *header, int axis) {
     const nrrd_role role = header->axes[axis].role;
     const int64_t size = header->axes[axis].size;
     return (role == NRRD_AXIS_COLORS ||
-            (role == NRRD_AXIS_VECTOR && header->type == SNOW_TYPE_UINT8)) &&
+            (role == NRRD_AXIS_VECTOR &&
+             header->data.type == SNOW_TYPE_UINT8)) &&
            (size == 3 || size == 4);
 }
 
 /* Of four axes that may all be of space, as ITK writes those of an image with
  * time, the last one is no space.  A short first axis without a kind may be
  * one of values, though. */
-static void take_fourth(snow_context *context, const nrrd_header *header,
-                        axis_choice *choice) {
+static void take_fourth(const nrrd_header *header, axis_choice *choice) {
     const nrrd_axis *first = &header->axes[choice->space[0]];
     if (choice->spaces != 4 || choice->time >= 0 ||
         (first->role == NRRD_AXIS_UNKNOWN && !first->directed &&
          first->size <= 4))
         return;
     choice->time = choice->space[--choice->spaces];
-    snow_notify(context,
+    snow_notify(header->context,
                 "axis %d is taken to be time or a list of volumes, since three "
                 "others are of space",
                 choice->time);
 }
 
-static snow_status choose_axes(snow_context *context, const nrrd_header *header,
-                               axis_choice *out) {
+static snow_status choose_axes(const nrrd_header *header, axis_choice *out) {
     *out = (axis_choice){.time = -1, .values = -1};
     for (int i = 0; i < header->dimension; i++) {
         nrrd_role role = role_of(header, i);
@@ -89,7 +89,7 @@ static snow_status choose_axes(snow_context *context, const nrrd_header *header,
             continue;
         int *of = role <= NRRD_AXIS_LIST ? &out->time : &out->values;
         if (*of >= 0)
-            return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+            return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
                              "axes %d and %d are both %s; extract one volume",
                              *of, i,
                              of == &out->time ? "time or a list of volumes"
@@ -97,10 +97,10 @@ static snow_status choose_axes(snow_context *context, const nrrd_header *header,
         *of = i;
     }
     drop_flat_axes(header, out);
-    take_fourth(context, header, out);
+    take_fourth(header, out);
     if (out->spaces > 3)
         return snow_fail(
-            context, SNOW_STATUS_BAD_INPUT,
+            header->context, SNOW_STATUS_BAD_INPUT,
             "has %d axes, and the meaning of the 4th is unknown; add \"kinds: "
             "domain domain domain time\", or extract a volume",
             out->spaces);
@@ -109,27 +109,25 @@ static snow_status choose_axes(snow_context *context, const nrrd_header *header,
 
 /* A direction of length 1 for each missing column, orthogonal to the others. */
 static void complete_columns(double m[4][4], int given) {
+    double axes[3][3];
+    for (int i = 0; i < 3; i++) {
+        axes[0][i] = m[i][0];
+        axes[1][i] = m[i][1];
+    }
     if (given == 1) {
         int least = 0;
         for (int i = 1; i < 3; i++)
             if (fabs(m[i][0]) < fabs(m[least][0]))
                 least = i;
-        double axis[3] = {least == 0, least == 1, least == 2};
-        for (int i = 0; i < 3; i++) {
-            int a = (i + 1) % 3, b = (i + 2) % 3;
-            m[i][1] = axis[a] * m[b][0] - axis[b] * m[a][0];
-        }
-        double length = hypot(hypot(m[0][1], m[1][1]), m[2][1]);
-        for (int i = 0; i < 3 && length > 0; i++)
-            m[i][1] /= length;
+        const double axis[3] = {least == 0, least == 1, least == 2};
+        snow_cross(axis, axes[0], axes[1]);
     }
-    for (int i = 0; i < 3; i++) {
-        int a = (i + 1) % 3, b = (i + 2) % 3;
-        m[i][2] = m[a][0] * m[b][1] - m[b][0] * m[a][1];
+    snow_cross(axes[0], axes[1], axes[2]);
+    for (int j = given; j < 3; j++) {
+        const double length = snow_length(axes[j]);
+        for (int i = 0; i < 3; i++)
+            m[i][j] = length > 0 ? axes[j][i] / length : 0;
     }
-    double length = hypot(hypot(m[0][2], m[1][2]), m[2][2]);
-    for (int i = 0; i < 3 && length > 0; i++)
-        m[i][2] /= length;
 }
 
 /* Axis j of the volume is the j-th spatial axis in the file's order; without
@@ -158,8 +156,8 @@ static void fill_matrix(const nrrd_header *header, const axis_choice *choice,
 
 /* The space's units have priority over the axes', as directions over spacings.
  * Medical spaces are in millimetres by default. */
-static void take_units(snow_context *context, const nrrd_header *header,
-                       const axis_choice *choice, snow_volume_info *info) {
+static void take_units(const nrrd_header *header, const axis_choice *choice,
+                       snow_volume_info *info) {
     const bool of_space = header->space_unit_count > 0;
     const char *texts[3] = {NULL};
     double factors[3];
@@ -168,7 +166,7 @@ static void take_units(snow_context *context, const nrrd_header *header,
             texts[i] = header->space_units[i];
         else if (!of_space && i < choice->spaces)
             texts[i] = header->axes[choice->space[i]].unit;
-    snow_length_join(context, texts, factors, info->unit);
+    snow_length_join(header->context, texts, factors, info->unit);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
             info->matrix[i][j] *= factors[of_space ? i : j];
@@ -180,17 +178,17 @@ static void take_units(snow_context *context, const nrrd_header *header,
 }
 
 /* Where the voxels lie that are chosen. */
-static snow_status lay_array(snow_context *context, const nrrd_header *header,
+static snow_status lay_array(const nrrd_header *header,
                              const axis_choice *choice, int64_t value,
                              const snow_volume_info *info, snow_array *out) {
     int64_t sizes[NRRD_MOST_AXES];
     uint64_t steps[NRRD_MOST_AXES];
-    *out = (snow_array){.big_endian = header->big_endian};
+    *out = (snow_array){.big_endian = header->data.big_endian};
     for (int i = 0; i < header->dimension; i++)
         sizes[i] = header->axes[i].size;
     if (!snow_array_steps(sizes, header->dimension,
-                          snow_type_size(header->type), steps, &out->all))
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                          snow_type_size(header->data.type), steps, &out->all))
+        return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
                          "its sizes are too large for any file; correct the "
                          "header");
     for (int i = 0; i < choice->spaces; i++)
@@ -203,14 +201,13 @@ static snow_status lay_array(snow_context *context, const nrrd_header *header,
 }
 
 /* Spacings that are not a number are common where only some are known. */
-static void complete_spacings(snow_context *context, nrrd_header *header,
-                              const axis_choice *choice) {
+static void complete_spacings(nrrd_header *header, const axis_choice *choice) {
     for (int i = 0; i < choice->spaces; i++) {
         nrrd_axis *axis = &header->axes[choice->space[i]];
         if (axis->directed || !isnan(axis->spacing))
             continue;
         axis->spacing = 1;
-        snow_notify(context,
+        snow_notify(header->context,
                     "the spacing of axis %d is not known and taken as 1; "
                     "--spacing sets another",
                     choice->space[i]);
@@ -219,41 +216,39 @@ static void complete_spacings(snow_context *context, nrrd_header *header,
 
 /* The matrix is checked before the time step: an error of the file comes before
  * one of the options. */
-snow_status snow_nrrd_lay_out(snow_context *context, nrrd_header *header,
+snow_status snow_nrrd_lay_out(nrrd_header *header,
                               const snow_volume_options *options,
-                              snow_volume_info *info, snow_region *region,
-                              snow_array *values) {
+                              snow_volume_info *info, snow_array *values) {
     axis_choice choice;
     int64_t value;
     *values = (snow_array){.all = 0};
-    SNOW_TRY(choose_axes(context, header, &choice));
+    SNOW_TRY(choose_axes(header, &choice));
     const int time = choice.time;
-    info->type = header->type;
+    info->type = header->data.type;
     info->medical = header->medical;
     for (int i = 0; i < choice.spaces; i++)
         info->dims[i] = header->axes[choice.space[i]].size;
     if (time >= 0)
         info->times = header->axes[time].size;
-    complete_spacings(context, header, &choice);
+    complete_spacings(header, &choice);
     fill_matrix(header, &choice, info->matrix);
-    take_units(context, header, &choice, info);
-    SNOW_TRY(snow_volume_info_check(context, info));
+    take_units(header, &choice, info);
+    SNOW_TRY(snow_volume_info_check(header->context, info));
     SNOW_TRY(snow_volume_pick_time(
-        context,
+        header->context,
         time >= 0 && role_of(header, time) == NRRD_AXIS_TIME ? "time step"
                                                              : "volume",
         options, info));
     const bool some = choice.values >= 0;
     SNOW_TRY(snow_volume_pick_value(
-        context, options, some ? header->axes[choice.values].size : 1,
+        header->context, options, some ? header->axes[choice.values].size : 1,
         some && are_colors(header, choice.values), info, &value));
-    const bool scattered = some || (time >= 0 && choice.spaces &&
-                                    time < choice.space[choice.spaces - 1]);
-    SNOW_TRY(scattered
-                 ? lay_array(context, header, &choice, value, info, values)
-                 : snow_region_lay_out(context, options, info, region));
+    if (some ||
+        (time >= 0 && choice.spaces && time < choice.space[choice.spaces - 1]))
+        SNOW_TRY(lay_array(header, &choice, value, info, values));
     if (header->turn[2] < 0)
-        snow_notify(context, "the world is left-handed; z is flipped, so that "
-                             "nothing is mirrored");
+        snow_notify(header->context,
+                    "the world is left-handed; z is flipped, so that "
+                    "nothing is mirrored");
     return SNOW_STATUS_OK;
 }

@@ -2,6 +2,7 @@
  *
  * Names are compared without case, blanks, dashes and underscores, which covers
  * the many spellings that the format allows. */
+#include "formats/ascii.h"
 #include "formats/nrrd/nrrd.h"
 
 #include <ctype.h>
@@ -11,111 +12,83 @@
 
 #define WORD_BYTES 64
 
+/* Names in lower case, without blanks and dashes, separated by blanks. */
 typedef struct name_value {
-    const char *name; /* lower case, without blanks and dashes */
+    const char *names;
     int value;
 } name_value;
 
 /* "char" alone is missing on purpose: the format has no such type, since its
  * sign depends on the compiler. */
 static const name_value type_names[] = {
-    {"signedchar", SNOW_TYPE_INT8},
-    {"int8", SNOW_TYPE_INT8},
-    {"int8t", SNOW_TYPE_INT8},
-    {"uchar", SNOW_TYPE_UINT8},
-    {"unsignedchar", SNOW_TYPE_UINT8},
-    {"uint8", SNOW_TYPE_UINT8},
-    {"uint8t", SNOW_TYPE_UINT8},
-    {"short", SNOW_TYPE_INT16},
-    {"shortint", SNOW_TYPE_INT16},
-    {"signedshort", SNOW_TYPE_INT16},
-    {"signedshortint", SNOW_TYPE_INT16},
-    {"int16", SNOW_TYPE_INT16},
-    {"int16t", SNOW_TYPE_INT16},
-    {"ushort", SNOW_TYPE_UINT16},
-    {"unsignedshort", SNOW_TYPE_UINT16},
-    {"unsignedshortint", SNOW_TYPE_UINT16},
-    {"uint16", SNOW_TYPE_UINT16},
-    {"uint16t", SNOW_TYPE_UINT16},
-    {"int", SNOW_TYPE_INT32},
-    {"signedint", SNOW_TYPE_INT32},
-    {"int32", SNOW_TYPE_INT32},
-    {"int32t", SNOW_TYPE_INT32},
-    {"uint", SNOW_TYPE_UINT32},
-    {"unsignedint", SNOW_TYPE_UINT32},
-    {"uint32", SNOW_TYPE_UINT32},
-    {"uint32t", SNOW_TYPE_UINT32},
-    {"longlong", SNOW_TYPE_INT64},
-    {"longlongint", SNOW_TYPE_INT64},
-    {"signedlonglong", SNOW_TYPE_INT64},
-    {"signedlonglongint", SNOW_TYPE_INT64},
-    {"int64", SNOW_TYPE_INT64},
-    {"int64t", SNOW_TYPE_INT64},
-    {"ulonglong", SNOW_TYPE_UINT64},
-    {"unsignedlonglong", SNOW_TYPE_UINT64},
-    {"unsignedlonglongint", SNOW_TYPE_UINT64},
-    {"uint64", SNOW_TYPE_UINT64},
-    {"uint64t", SNOW_TYPE_UINT64},
-    {"float", SNOW_TYPE_FLOAT32},
-    {"float32", SNOW_TYPE_FLOAT32},
-    {"double", SNOW_TYPE_FLOAT64},
-    {"float64", SNOW_TYPE_FLOAT64},
-    {NULL, 0},
+    {"signedchar int8 int8t", SNOW_TYPE_INT8},
+    {"uchar unsignedchar uint8 uint8t", SNOW_TYPE_UINT8},
+    {"short shortint signedshort signedshortint int16 int16t", SNOW_TYPE_INT16},
+    {"ushort unsignedshort unsignedshortint uint16 uint16t", SNOW_TYPE_UINT16},
+    {"int signedint int32 int32t", SNOW_TYPE_INT32},
+    {"uint unsignedint uint32 uint32t", SNOW_TYPE_UINT32},
+    {"longlong longlongint signedlonglong signedlonglongint int64 int64t",
+     SNOW_TYPE_INT64},
+    {"ulonglong unsignedlonglong unsignedlonglongint uint64 uint64t",
+     SNOW_TYPE_UINT64},
+    {"float float32", SNOW_TYPE_FLOAT32},
+    {"double float64", SNOW_TYPE_FLOAT64},
+    {NULL, SNOW_TYPE_NONE},
 };
 
 /* Not supported: zrl (in no document of the format). */
 static const name_value encoding_names[] = {
-    {"raw", NRRD_RAW},     {"gzip", NRRD_GZIP},
-    {"gz", NRRD_GZIP},     {"bzip2", NRRD_BZIP2},
-    {"bz2", NRRD_BZIP2},   {"hex", NRRD_HEX},
-    {"ascii", NRRD_ASCII}, {"text", NRRD_ASCII},
-    {"txt", NRRD_ASCII},   {NULL, 0},
+    {"raw", SNOW_PACKING_NONE},
+    {"gzip gz", SNOW_PACKING_GZIP},
+    {"bzip2 bz2", SNOW_PACKING_BZIP2},
+    {"hex", SNOW_PACKING_HEX},
+    {"ascii text txt", SNOW_PACKING_TEXT},
+    {NULL, 0},
 };
 
 /* Kinds of several values: complex numbers, vectors, colours, tensors. */
 static const name_value role_names[] = {
-    {"domain", NRRD_AXIS_SPACE},    {"space", NRRD_AXIS_SPACE},
-    {"time", NRRD_AXIS_TIME},       {"list", NRRD_AXIS_LIST},
-    {"???", NRRD_AXIS_UNKNOWN},     {"none", NRRD_AXIS_UNKNOWN},
-    {"rgbcolor", NRRD_AXIS_COLORS}, {"rgbacolor", NRRD_AXIS_COLORS},
-    {"3color", NRRD_AXIS_COLORS},   {"4color", NRRD_AXIS_COLORS},
-    {"vector", NRRD_AXIS_VECTOR},   {"covariantvector", NRRD_AXIS_VECTOR},
-    {"2vector", NRRD_AXIS_VECTOR},  {"3vector", NRRD_AXIS_VECTOR},
-    {"4vector", NRRD_AXIS_VECTOR},  {"3gradient", NRRD_AXIS_VECTOR},
-    {"3normal", NRRD_AXIS_VECTOR},  {NULL, NRRD_AXIS_VALUES},
+    {"domain space", NRRD_AXIS_SPACE},
+    {"time", NRRD_AXIS_TIME},
+    {"list", NRRD_AXIS_LIST},
+    {"??? none", NRRD_AXIS_UNKNOWN},
+    {"rgbcolor rgbacolor 3color 4color", NRRD_AXIS_COLORS},
+    {"vector covariantvector 2vector 3vector 4vector 3gradient 3normal",
+     NRRD_AXIS_VECTOR},
+    {NULL, NRRD_AXIS_VALUES},
 };
 
 /* Worlds: the number of coordinates, and the signs that convert them to RAS+
  * (medical ones) or to a right-handed system. */
 static const struct world {
-    const char *names[2];
+    const char *names;
     int dimension;
     double turn[3];
     bool medical;
 } worlds[] = {
-    {{"rightanteriorsuperior", "ras"}, 3, {1, 1, 1}, true},
-    {{"leftanteriorsuperior", "las"}, 3, {-1, 1, 1}, true},
-    {{"leftposteriorsuperior", "lps"}, 3, {-1, -1, 1}, true},
-    {{"rightanteriorsuperiortime", "rast"}, 4, {1, 1, 1}, true},
-    {{"leftanteriorsuperiortime", "last"}, 4, {-1, 1, 1}, true},
-    {{"leftposteriorsuperiortime", "lpst"}, 4, {-1, -1, 1}, true},
-    {{"scannerxyz", ""}, 3, {1, 1, 1}, false},
-    {{"scannerxyztime", ""}, 4, {1, 1, 1}, false},
-    {{"3drighthanded", ""}, 3, {1, 1, 1}, false},
-    {{"3drighthandedtime", ""}, 4, {1, 1, 1}, false},
-    {{"3dlefthanded", ""}, 3, {1, 1, -1}, false},
-    {{"3dlefthandedtime", ""}, 4, {1, 1, -1}, false},
+    {"rightanteriorsuperior ras", 3, {1, 1, 1}, true},
+    {"leftanteriorsuperior las", 3, {-1, 1, 1}, true},
+    {"leftposteriorsuperior lps", 3, {-1, -1, 1}, true},
+    {"rightanteriorsuperiortime rast", 4, {1, 1, 1}, true},
+    {"leftanteriorsuperiortime last", 4, {-1, 1, 1}, true},
+    {"leftposteriorsuperiortime lpst", 4, {-1, -1, 1}, true},
+    {"scannerxyz", 3, {1, 1, 1}, false},
+    {"scannerxyztime", 4, {1, 1, 1}, false},
+    {"3drighthanded", 3, {1, 1, 1}, false},
+    {"3drighthandedtime", 4, {1, 1, 1}, false},
+    {"3dlefthanded", 3, {1, 1, -1}, false},
+    {"3dlefthandedtime", 4, {1, 1, -1}, false},
 };
 
 /* The value is shortened in messages: a line may be 256 KiB long. */
-static snow_status fail_field(snow_context *context, const nrrd_text *text,
-                              nrrd_field field, const char *wrong) {
+static snow_status fail_field(const nrrd_text *text, nrrd_field field,
+                              const char *wrong) {
     const char *value = snow_nrrd_value(text, field);
     if (!value)
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+        return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
                          "the header has no field \"%s\"; add it",
                          snow_nrrd_field_name(field));
-    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+    return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
                      "the header's field \"%s: %.60s\" %s; correct it",
                      snow_nrrd_field_name(field), value, wrong);
 }
@@ -134,22 +107,9 @@ static void plain_name(const char *value, char name[WORD_BYTES]) {
 static const name_value *look_up(const name_value *table, const char *value) {
     char name[WORD_BYTES];
     plain_name(value, name);
-    while (table->name && strcmp(table->name, name) != 0)
+    while (table->names && !snow_has_word(table->names, name))
         table++;
     return table;
-}
-
-/* Reads the next word; returns false at the end, and for a word longer than any
- * valid one, which could match another if shortened. */
-static bool next_word(const char **at, char word[WORD_BYTES]) {
-    const char *from = *at + strspn(*at, " \t");
-    size_t length = strcspn(from, " \t");
-    if (!length || length >= WORD_BYTES)
-        return false;
-    memcpy(word, from, length);
-    word[length] = 0;
-    *at = from + length;
-    return true;
 }
 
 /* True if more text follows, however long. */
@@ -178,100 +138,95 @@ static bool next_vector(const char **at, int count, double *out) {
     return true;
 }
 
-static snow_status parse_encoding(snow_context *context, const nrrd_text *text,
-                                  nrrd_header *out) {
+static snow_status parse_encoding(const nrrd_text *text, nrrd_header *out) {
     const char *value = snow_nrrd_value(text, NRRD_ENCODING);
     if (!value)
-        return fail_field(context, text, NRRD_ENCODING, "");
+        return fail_field(text, NRRD_ENCODING, "");
     const name_value *entry = look_up(encoding_names, value);
-    if (!entry->name)
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+    if (!entry->names)
+        return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
                          "the encoding \"%.40s\" is not supported; recompress "
                          "the file with gzip",
                          value);
-    out->encoding = (nrrd_encoding)entry->value;
+    out->data.packing = (snow_packing)entry->value;
     return SNOW_STATUS_OK;
 }
 
 /* If the byte order matters and is missing, guessing could show noise as
  * data. */
-static snow_status parse_endian(snow_context *context, const nrrd_text *text,
-                                nrrd_header *out) {
+static snow_status parse_endian(const nrrd_text *text, nrrd_header *out) {
     const char *value = snow_nrrd_value(text, NRRD_ENDIAN);
-    bool matters = out->encoding != NRRD_ASCII && snow_type_size(out->type) > 1;
+    bool matters = out->data.packing != SNOW_PACKING_TEXT &&
+                   snow_type_size(out->data.type) > 1;
     if (!value && matters)
-        return fail_field(context, text, NRRD_ENDIAN, "");
-    out->big_endian = snow_machine_big_endian();
+        return fail_field(text, NRRD_ENDIAN, "");
+    out->data.big_endian = snow_machine_big_endian();
     if (!value)
         return SNOW_STATUS_OK;
     char name[WORD_BYTES];
     plain_name(value, name);
-    out->big_endian = !strcmp(name, "big");
-    if (!out->big_endian && strcmp(name, "little") != 0)
-        return fail_field(context, text, NRRD_ENDIAN,
-                          "is neither big nor little");
+    out->data.big_endian = !strcmp(name, "big");
+    if (!out->data.big_endian && strcmp(name, "little") != 0)
+        return fail_field(text, NRRD_ENDIAN, "is neither big nor little");
     return SNOW_STATUS_OK;
 }
 
 /* Sixteen axes are the format's own limit. */
-static snow_status parse_dimension(snow_context *context, const nrrd_text *text,
-                                   nrrd_header *out) {
+static snow_status parse_dimension(const nrrd_text *text, nrrd_header *out) {
     const char *value = snow_nrrd_value(text, NRRD_DIMENSION);
     int64_t dimension;
     if (!value || !snow_parse_int64(value, &dimension) || dimension < 1 ||
         dimension > NRRD_MOST_AXES)
-        return fail_field(context, text, NRRD_DIMENSION,
+        return fail_field(text, NRRD_DIMENSION,
                           "is not a number of axes from 1 to 16");
     out->dimension = (int)dimension;
     return SNOW_STATUS_OK;
 }
 
-static snow_status parse_sizes(snow_context *context, const nrrd_text *text,
-                               nrrd_header *out) {
+static snow_status parse_sizes(const nrrd_text *text, nrrd_header *out) {
     const char *at = snow_nrrd_value(text, NRRD_SIZES);
     char word[WORD_BYTES];
     if (!at)
-        return fail_field(context, text, NRRD_SIZES, "");
+        return fail_field(text, NRRD_SIZES, "");
     for (int i = 0; i < out->dimension; i++)
-        if (!next_word(&at, word) ||
+        if (!snow_next_word(&at, word, sizeof word) ||
             !snow_parse_int64(word, &out->axes[i].size) ||
             out->axes[i].size < 1)
             return fail_field(
-                context, text, NRRD_SIZES,
+                text, NRRD_SIZES,
                 "does not have one whole number above 0 for each axis");
     if (has_more(at))
-        return fail_field(context, text, NRRD_SIZES,
+        return fail_field(text, NRRD_SIZES,
                           "has more numbers than there are axes");
     return SNOW_STATUS_OK;
 }
 
 /* One number for each axis; the field exists. */
-static snow_status parse_axis_numbers(snow_context *context,
-                                      const nrrd_text *text, nrrd_field field,
+static snow_status parse_axis_numbers(const nrrd_text *text, nrrd_field field,
                                       int dimension,
                                       double out[NRRD_MOST_AXES]) {
     const char *at = snow_nrrd_value(text, field);
     char word[WORD_BYTES];
     for (int i = 0; i < dimension; i++)
-        if (!next_word(&at, word) || !snow_parse_double(word, &out[i]))
-            return fail_field(context, text, field,
+        if (!snow_next_word(&at, word, sizeof word) ||
+            !snow_parse_double(word, &out[i]))
+            return fail_field(text, field,
                               "does not have one number for each axis");
     if (has_more(at))
-        return fail_field(context, text, field,
-                          "has more numbers than there are axes");
+        return fail_field(text, field, "has more numbers than there are axes");
     return SNOW_STATUS_OK;
 }
 
 /* Which axes have samples at their ends.  "cell", "???", "none" and a missing
  * field are the same here: the format leaves the default to the reader, and
  * voxels are cells. */
-static snow_status parse_nodes(snow_context *context, const nrrd_text *text,
-                               int dimension, bool nodes[NRRD_MOST_AXES]) {
+static snow_status parse_nodes(const nrrd_text *text, int dimension,
+                               bool nodes[NRRD_MOST_AXES]) {
     const char *at = snow_nrrd_value(text, NRRD_CENTERS);
     char word[WORD_BYTES], name[WORD_BYTES];
     for (int i = 0; at && i < dimension; i++) {
-        if (!next_word(&at, word))
-            return fail_field(context, text, NRRD_CENTERS,
+        if (!snow_next_word(&at, word, sizeof word))
+            return fail_field(text, NRRD_CENTERS,
                               "does not have one centering for each axis");
         plain_name(word, name);
         nodes[i] = !strcmp(name, "node");
@@ -282,15 +237,13 @@ static snow_status parse_nodes(snow_context *context, const nrrd_text *text,
 /* The older way to place samples, by the ends of each axis: those of the first
  * and last cell, or the first and last sample ("node").  The ends may come in
  * either order; NaN means unknown.  The field "space origin" has priority. */
-static snow_status parse_ends(snow_context *context, const nrrd_text *text,
-                              nrrd_header *out) {
+static snow_status parse_ends(const nrrd_text *text, nrrd_header *out) {
     double from[NRRD_MOST_AXES], to[NRRD_MOST_AXES];
     bool nodes[NRRD_MOST_AXES] = {false};
     int dimension = out->dimension;
-    SNOW_TRY(
-        parse_axis_numbers(context, text, NRRD_AXIS_MINS, dimension, from));
-    SNOW_TRY(parse_axis_numbers(context, text, NRRD_AXIS_MAXS, dimension, to));
-    SNOW_TRY(parse_nodes(context, text, dimension, nodes));
+    SNOW_TRY(parse_axis_numbers(text, NRRD_AXIS_MINS, dimension, from));
+    SNOW_TRY(parse_axis_numbers(text, NRRD_AXIS_MAXS, dimension, to));
+    SNOW_TRY(parse_nodes(text, dimension, nodes));
     bool placed = snow_nrrd_value(text, NRRD_ORIGIN) != NULL;
     for (int i = 0; i < dimension; i++) {
         nrrd_axis *axis = &out->axes[i];
@@ -307,49 +260,47 @@ static snow_status parse_ends(snow_context *context, const nrrd_text *text,
 
 /* NaN is accepted here: it is right for an axis that is not spatial, and means
  * not known for a spatial one. */
-static snow_status parse_spacings(snow_context *context, const nrrd_text *text,
-                                  nrrd_header *out) {
+static snow_status parse_spacings(const nrrd_text *text, nrrd_header *out) {
     double spacings[NRRD_MOST_AXES];
     bool given = snow_nrrd_value(text, NRRD_SPACINGS) != NULL;
     if (given)
-        SNOW_TRY(parse_axis_numbers(context, text, NRRD_SPACINGS,
-                                    out->dimension, spacings));
+        SNOW_TRY(
+            parse_axis_numbers(text, NRRD_SPACINGS, out->dimension, spacings));
     for (int i = 0; i < out->dimension; i++)
         out->axes[i].spacing = given ? spacings[i] : 1;
     if (!given && !snow_nrrd_value(text, NRRD_DIRECTIONS) &&
         snow_nrrd_value(text, NRRD_AXIS_MINS) &&
         snow_nrrd_value(text, NRRD_AXIS_MAXS))
-        return parse_ends(context, text, out);
+        return parse_ends(text, out);
     return SNOW_STATUS_OK;
 }
 
 /* A kind that is not in the table is some kind of components. */
-static snow_status parse_kinds(snow_context *context, const nrrd_text *text,
-                               nrrd_header *out) {
+static snow_status parse_kinds(const nrrd_text *text, nrrd_header *out) {
     const char *at = snow_nrrd_value(text, NRRD_KINDS);
     char word[WORD_BYTES];
     for (int i = 0; at && i < out->dimension; i++) {
-        if (!next_word(&at, word))
-            return fail_field(context, text, NRRD_KINDS,
+        if (!snow_next_word(&at, word, sizeof word))
+            return fail_field(text, NRRD_KINDS,
                               "does not have one kind for each axis");
         out->axes[i].role = (nrrd_role)look_up(role_names, word)->value;
     }
     if (at && has_more(at))
-        return fail_field(context, text, NRRD_KINDS,
+        return fail_field(text, NRRD_KINDS,
                           "has more kinds than there are axes");
     return SNOW_STATUS_OK;
 }
 
 /* The number of world coordinates: from the world's name, or given, or 3. */
-static snow_status parse_world(snow_context *context, const nrrd_text *text,
-                               nrrd_header *out, int *dimension) {
+static snow_status parse_world(const nrrd_text *text, nrrd_header *out,
+                               int *dimension) {
     const char *space = snow_nrrd_value(text, NRRD_SPACE);
     const char *given = snow_nrrd_value(text, NRRD_SPACE_DIMENSION);
     int64_t count = 3;
     for (int i = 0; i < 3; i++)
         out->turn[i] = 1;
     if (given && (!snow_parse_int64(given, &count) || count < 1 || count > 4))
-        return fail_field(context, text, NRRD_SPACE_DIMENSION,
+        return fail_field(text, NRRD_SPACE_DIMENSION,
                           "is not a number of world axes from 1 to 4");
     *dimension = (int)count;
     if (!space)
@@ -357,19 +308,17 @@ static snow_status parse_world(snow_context *context, const nrrd_text *text,
     char name[WORD_BYTES];
     plain_name(space, name);
     for (size_t i = 0; i < sizeof worlds / sizeof *worlds; i++) {
-        if (strcmp(name, worlds[i].names[0]) != 0 &&
-            strcmp(name, worlds[i].names[1]) != 0)
+        if (!snow_has_word(worlds[i].names, name))
             continue;
         if (given && count != worlds[i].dimension)
-            return fail_field(context, text, NRRD_SPACE_DIMENSION,
+            return fail_field(text, NRRD_SPACE_DIMENSION,
                               "contradicts the field \"space\"");
         *dimension = worlds[i].dimension;
         memcpy(out->turn, worlds[i].turn, sizeof out->turn);
         out->medical = worlds[i].medical;
         return SNOW_STATUS_OK;
     }
-    return fail_field(context, text, NRRD_SPACE,
-                      "is not a space of the format");
+    return fail_field(text, NRRD_SPACE, "is not a space of the format");
 }
 
 /* One axis: a vector, or "none" for an axis that is not spatial. */
@@ -383,30 +332,28 @@ static bool next_direction(const char **at, int dimension, nrrd_axis *axis) {
             axis->directed |= !isnan(step[i]);
         return true;
     }
-    if (!next_word(&from, word) || strcmp(word, "none") != 0)
+    if (!snow_next_word(&from, word, sizeof word) || strcmp(word, "none") != 0)
         return false;
     *at = from;
     return true;
 }
 
-static snow_status parse_directions(snow_context *context,
-                                    const nrrd_text *text, int dimension,
+static snow_status parse_directions(const nrrd_text *text, int dimension,
                                     nrrd_header *out) {
     const char *at = snow_nrrd_value(text, NRRD_DIRECTIONS);
     for (int i = 0; at && i < out->dimension; i++) {
         if (!next_direction(&at, dimension, &out->axes[i]))
             return fail_field(
-                context, text, NRRD_DIRECTIONS,
+                text, NRRD_DIRECTIONS,
                 "does not have one vector or \"none\" for each axis");
         out->directions = out->directions || out->axes[i].directed;
     }
     if (at && has_more(at))
-        return fail_field(context, text, NRRD_DIRECTIONS,
+        return fail_field(text, NRRD_DIRECTIONS,
                           "has more vectors than there are axes");
     at = snow_nrrd_value(text, NRRD_ORIGIN);
     if (at && (!next_vector(&at, dimension, out->origin) || has_more(at)))
-        return fail_field(context, text, NRRD_ORIGIN,
-                          "is not a vector of the space");
+        return fail_field(text, NRRD_ORIGIN, "is not a vector of the space");
     return SNOW_STATUS_OK;
 }
 
@@ -435,49 +382,54 @@ static void parse_units(const nrrd_text *text, nrrd_header *out) {
 
 /* -1 cannot be counted back in a text of numbers.  Teem knows no other negative
  * skip. */
-static snow_status parse_skips(snow_context *context, const nrrd_text *text,
-                               nrrd_header *out) {
+static snow_status parse_skips(const nrrd_text *text, nrrd_header *out) {
     const char *lines = snow_nrrd_value(text, NRRD_LINE_SKIP);
     const char *bytes = snow_nrrd_value(text, NRRD_BYTE_SKIP);
     int64_t skip;
     if (lines) {
         if (!snow_parse_int64(lines, &skip) || skip < 0)
-            return fail_field(context, text, NRRD_LINE_SKIP,
-                              "is not a number of lines");
-        out->line_skip = (uint64_t)skip;
+            return fail_field(text, NRRD_LINE_SKIP, "is not a number of lines");
+        out->data.line_skip = (uint64_t)skip;
     }
     if (bytes &&
-        (!snow_parse_int64(bytes, &out->byte_skip) || out->byte_skip < -1 ||
-         (out->byte_skip < 0 && out->encoding == NRRD_ASCII)))
+        (!snow_parse_int64(bytes, &out->data.byte_skip) ||
+         out->data.byte_skip < -1 ||
+         (out->data.byte_skip < 0 && out->data.packing == SNOW_PACKING_TEXT)))
         return fail_field(
-            context, text, NRRD_BYTE_SKIP,
+            text, NRRD_BYTE_SKIP,
             "is not a number of bytes (nor -1 before binary data)");
     return SNOW_STATUS_OK;
 }
 
 /* In the order of dependence, whatever the order in the file: the dimension
  * before lists of one entry for each axis, the world before its vectors. */
-snow_status snow_nrrd_parse_header(snow_context *context, const nrrd_text *text,
-                                   nrrd_header *out) {
+snow_status snow_nrrd_parse_header(const nrrd_text *text, nrrd_header *out) {
     int dimension = 3;
-    *out = (nrrd_header){0};
+    *out = (nrrd_header){
+        .context = text->context,
+        .data = {.commas = true,
+                 .skip = "the skipped bytes",
+                 .find = snow_format_of_bytes,
+                 .advice =
+                     "add \"byte skip: -1\" to the NRRD header to skip that",
+                 .count = 1}};
     /* "block" is also a type, of opaque samples, and is not supported. */
     const char *value = snow_nrrd_value(text, NRRD_TYPE);
-    out->type =
+    out->data.type =
         value ? (snow_type)look_up(type_names, value)->value : SNOW_TYPE_NONE;
-    if (!out->type)
-        return fail_field(context, text, NRRD_TYPE,
+    if (!out->data.type)
+        return fail_field(text, NRRD_TYPE,
                           "is not a supported scalar type (8 to 64 bit "
                           "integers, float, double)");
-    SNOW_TRY(parse_encoding(context, text, out));
-    SNOW_TRY(parse_endian(context, text, out));
-    SNOW_TRY(parse_dimension(context, text, out));
-    SNOW_TRY(parse_sizes(context, text, out));
-    SNOW_TRY(parse_spacings(context, text, out));
-    SNOW_TRY(parse_kinds(context, text, out));
-    SNOW_TRY(parse_world(context, text, out, &dimension));
-    SNOW_TRY(parse_directions(context, text, dimension, out));
-    SNOW_TRY(parse_skips(context, text, out));
+    SNOW_TRY(parse_encoding(text, out));
+    SNOW_TRY(parse_endian(text, out));
+    SNOW_TRY(parse_dimension(text, out));
+    SNOW_TRY(parse_sizes(text, out));
+    SNOW_TRY(parse_spacings(text, out));
+    SNOW_TRY(parse_kinds(text, out));
+    SNOW_TRY(parse_world(text, out, &dimension));
+    SNOW_TRY(parse_directions(text, dimension, out));
+    SNOW_TRY(parse_skips(text, out));
     parse_units(text, out);
     return SNOW_STATUS_OK;
 }

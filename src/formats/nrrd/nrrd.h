@@ -3,18 +3,16 @@
  *   text.c    lines      -> nrrd_text    fields by name, still as text
  *   header.c  nrrd_text  -> nrrd_header  numbers and names parsed
  *   grid.c    axes       -> volume info  the spatial axes, the matrix
- *   files.c   data file  -> nrrd_files   the files with the voxels
- *   data.c    files      -> voxels
- *   unpack.c  the encodings of binary data
+ *   nrrd.c    data file  -> snow_detached  the files with the voxels
  *
- * formats/ascii.c reads the encoding "ascii".
+ * formats/detached/detached.c reads these.
  *
  * After "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html
  * (versions 1 to 5). */
 #ifndef SNOW_FORMATS_NRRD_NRRD_H
 #define SNOW_FORMATS_NRRD_NRRD_H
 
-#include "formats/array.h"
+#include "formats/detached/detached.h"
 
 #define NRRD_MOST_AXES 16
 
@@ -71,6 +69,7 @@ typedef struct nrrd_segment {
 /* The text of a header: each field's value as a string in `block`, followed by
  * the names of the data files if the header lists them. */
 typedef struct nrrd_text {
+    snow_context *context;
     char *block; /* NULL while it is empty */
     size_t used;
     size_t value[NRRD_FIELD_COUNT]; /* offset in block, 0: no such field */
@@ -79,14 +78,6 @@ typedef struct nrrd_text {
     nrrd_segment *segments;         /* NULL: none */
     size_t segment_count;
 } nrrd_text;
-
-typedef enum nrrd_encoding {
-    NRRD_RAW,
-    NRRD_GZIP,
-    NRRD_BZIP2,
-    NRRD_HEX,
-    NRRD_ASCII
-} nrrd_encoding;
 
 /* What an axis of the array is. */
 typedef enum nrrd_role {
@@ -110,9 +101,8 @@ typedef struct nrrd_axis {
 } nrrd_axis;
 
 typedef struct nrrd_header {
-    snow_type type;
-    nrrd_encoding encoding;
-    bool big_endian;
+    snow_context *context;
+    snow_detached data;
     int dimension;
     nrrd_axis axes[NRRD_MOST_AXES];
     bool directions;  /* some axis has one */
@@ -121,25 +111,7 @@ typedef struct nrrd_header {
     bool medical;
     char space_units[4][16]; /* of the world's axes, as the file has them */
     int space_unit_count;    /* 0: not given */
-    uint64_t line_skip;
-    int64_t byte_skip; /* -1: the data are the last bytes */
 } nrrd_header;
-
-typedef enum nrrd_place {
-    NRRD_ATTACHED, /* after the header */
-    NRRD_SINGLE,
-    NRRD_LIST,
-    NRRD_PATTERN
-} nrrd_place;
-
-/* The data files, each with the same number of bytes. */
-typedef struct nrrd_files {
-    nrrd_place place;
-    uint64_t count;   /* at least 1 */
-    const char *name; /* file name, first name of a list, pattern */
-    size_t name_bytes;
-    int64_t first, step; /* of the numbers in a pattern */
-} nrrd_files;
 
 /* Reads up to the end of the header.  The block must be released whatever the
  * status. */
@@ -149,51 +121,13 @@ snow_status snow_nrrd_read_text(snow_source *source, nrrd_text *text);
 const char *snow_nrrd_value(const nrrd_text *text, nrrd_field field);
 const char *snow_nrrd_field_name(nrrd_field field);
 
-snow_status snow_nrrd_parse_header(snow_context *context, const nrrd_text *text,
-                                   nrrd_header *out);
+snow_status snow_nrrd_parse_header(const nrrd_text *text, nrrd_header *out);
 
-/* Sets dims, matrix, times and all else of the info; applies the time step and
- * the box of the options, and finds their place in the array.  Where the voxels
- * of a volume do not follow one another, values->all is not 0, and the box is
- * left to snow_nrrd_read_values. */
-snow_status snow_nrrd_lay_out(snow_context *context, nrrd_header *header,
+/* Sets dims, matrix, times and all else of the info; applies the time step of
+ * the options.  Where the voxels of a volume do not follow one another,
+ * values->all is not 0. */
+snow_status snow_nrrd_lay_out(nrrd_header *header,
                               const snow_volume_options *options,
-                              snow_volume_info *info, snow_region *region,
-                              snow_array *values);
-
-snow_status snow_nrrd_find_files(snow_context *context, const nrrd_text *text,
-                                 const nrrd_header *header, nrrd_files *out);
-
-/* Declares that the bytes from here on are in the encoding; ascii is left to
- * those who read numbers. */
-snow_status snow_nrrd_unpack(snow_source *source, nrrd_encoding encoding);
-
-/* Writes the name of file `index` as a string into `name`; `*at`, NULL before
- * the first call, keeps the position in a list, whose files are requested in
- * order. */
-snow_status snow_nrrd_file_name(snow_context *context, const nrrd_files *files,
-                                uint64_t index, const char **at, char *name,
-                                size_t size);
-
-/* Checks that data after the header can be complete; `source` is positioned
- * there.  Data in other files are not checked. */
-snow_status snow_nrrd_check_data(snow_source *source, const nrrd_header *header,
-                                 const nrrd_files *files,
-                                 const snow_region *region);
-
-/* Makes the volume of values that lie apart, or of the header alone its
- * info. */
-snow_status snow_nrrd_read_values(snow_source *source,
-                                  const nrrd_header *header,
-                                  const nrrd_files *files,
-                                  const snow_volume_options *options,
-                                  const snow_array *values,
-                                  snow_volume_info *info, snow_volume **out);
-
-/* Makes the volume; `source` is positioned after the header. */
-snow_status snow_nrrd_read_data(snow_source *source, const nrrd_header *header,
-                                const nrrd_files *files,
-                                const snow_volume_info *info,
-                                const snow_region *region, snow_volume **out);
+                              snow_volume_info *info, snow_array *values);
 
 #endif

@@ -51,14 +51,13 @@ static nrrd_field field_named(const char *name, size_t length) {
 }
 
 /* Appends a string; *offset is its position in the block. */
-static snow_status append(snow_context *context, nrrd_text *text,
-                          const char *string, size_t *offset) {
+static snow_status append(nrrd_text *text, const char *string, size_t *offset) {
     size_t length = strlen(string) + 1;
     if (length > MOST_HEADER_BYTES - text->used)
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+        return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
                          "the header is longer than 16 MiB; it is damaged");
-    SNOW_TRY(
-        SNOW_RESERVE(context, text->block, text->used, text->used + length));
+    SNOW_TRY(SNOW_RESERVE(text->context, text->block, text->used,
+                          text->used + length));
     memcpy(text->block + text->used, string, length);
     *offset = text->used;
     text->used += length;
@@ -86,16 +85,15 @@ static bool read_color(const char *text, double color[4]) {
 
 /* A key of 3D Slicer's segmentations, "Segment0_Name": its segment is made
  * before. */
-static snow_status take_segment(snow_context *context, nrrd_text *text,
-                                const char *line) {
+static snow_status take_segment(nrrd_text *text, const char *line) {
     char key[16], digits[5];
     int at = 0;
     if (sscanf(line, "Segment%4[0-9]_%15[A-Za-z]:=%n", digits, key, &at) != 2 ||
         !at)
         return SNOW_STATUS_OK;
     size_t number = (size_t)strtoul(digits, NULL, 10);
-    SNOW_TRY(
-        SNOW_RESERVE(context, text->segments, text->segment_count, number + 1));
+    SNOW_TRY(SNOW_RESERVE(text->context, text->segments, text->segment_count,
+                          number + 1));
     while (text->segment_count <= number)
         text->segments[text->segment_count++] =
             (nrrd_segment){{NAN, {-1, 0, 0, -1}, ""}, -1};
@@ -116,7 +114,7 @@ static snow_status take_segment(snow_context *context, nrrd_text *text,
         good = read_color(line + at, label->color);
     if (good)
         return SNOW_STATUS_OK;
-    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+    return snow_fail(text->context, SNOW_STATUS_BAD_INPUT,
                      "the header's line \"%.60s\" is wrong; a label or a "
                      "layer is a number, a colour three numbers of 0 to 1, an "
                      "opacity one",
@@ -124,8 +122,7 @@ static snow_status take_segment(snow_context *context, nrrd_text *text,
 }
 
 /* A line that is not a comment: a field, or a key with a value. */
-static snow_status take_line(snow_context *context, nrrd_text *text,
-                             const char *line) {
+static snow_status take_line(nrrd_text *text, const char *line) {
     const char *colon = strchr(line, ':');
     if (colon && colon[1] != '=') {
         nrrd_field field = field_named(line, (size_t)(colon - line));
@@ -137,17 +134,17 @@ static snow_status take_line(snow_context *context, nrrd_text *text,
                 return SNOW_STATUS_OK;
             if (text->value[field])
                 return snow_fail(
-                    context, SNOW_STATUS_BAD_INPUT,
+                    text->context, SNOW_STATUS_BAD_INPUT,
                     "the header's field \"%s\" occurs twice with different "
                     "values; delete one",
                     snow_nrrd_field_name(field));
-            return append(context, text, value, &text->value[field]);
+            return append(text, value, &text->value[field]);
         }
     }
     if (strstr(line, ":="))
-        return take_segment(context, text, line);
+        return take_segment(text, line);
     return snow_fail(
-        context, SNOW_STATUS_BAD_INPUT,
+        text->context, SNOW_STATUS_BAD_INPUT,
         "the header's line \"%.60s\" is not a field of the format; correct it, "
         "or write \":=\" for a key with a value",
         line);
@@ -169,29 +166,18 @@ static snow_status check_magic(snow_context *context, const char *line) {
                      "damaged or of another format");
 }
 
-/* The names are contiguous in the block, because nothing else is appended after
- * the list's first line. */
-static snow_status take_listed(snow_context *context, nrrd_text *text,
-                               const char *line) {
-    size_t offset = 0;
-    SNOW_TRY(append(context, text, line, &offset));
-    if (!text->listed++)
-        text->list = offset;
-    return SNOW_STATUS_OK;
-}
-
 /* An empty line ends the header, and with it a list of files. Without one the
  * end of the file does, but only if the data are elsewhere. */
 static snow_status read_lines(snow_source *source, char *line,
                               nrrd_text *text) {
     snow_context *context = snow_source_context(source);
     bool got;
-    size_t nothing;
+    size_t at;
     SNOW_TRY(snow_source_read_line(source, line, MOST_LINE_BYTES, &got));
     trim_end(line);
     SNOW_TRY(check_magic(context, line));
     /* So that no field has offset 0. */
-    SNOW_TRY(append(context, text, "", &nothing));
+    SNOW_TRY(append(text, "", &at));
     for (;;) {
         SNOW_TRY(snow_source_read_line(source, line, MOST_LINE_BYTES, &got));
         trim_end(line);
@@ -200,10 +186,14 @@ static snow_status read_lines(snow_source *source, char *line,
         /* True for "LIST" and "LIST 2". */
         const char *value = snow_nrrd_value(text, NRRD_DATA_FILE);
         if (value && !strncmp(value, "LIST", 4) &&
-            (!value[4] || isspace((unsigned char)value[4])))
-            SNOW_TRY(take_listed(context, text, line));
-        else if (*line != '#')
-            SNOW_TRY(take_line(context, text, line));
+            (!value[4] || isspace((unsigned char)value[4]))) {
+            /* The names are contiguous in the block, because nothing else is
+             * appended after the list's first line. */
+            SNOW_TRY(append(text, line, text->listed ? &at : &text->list));
+            text->listed++;
+        } else if (*line != '#') {
+            SNOW_TRY(take_line(text, line));
+        }
     }
     if (!got && !text->value[NRRD_DATA_FILE])
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
@@ -215,7 +205,7 @@ static snow_status read_lines(snow_source *source, char *line,
 /* The line has a block of its own for now: it may be 256 KiB long. */
 snow_status snow_nrrd_read_text(snow_source *source, nrrd_text *text) {
     snow_context *context = snow_source_context(source);
-    *text = (nrrd_text){0};
+    *text = (nrrd_text){.context = context};
     char *line = snow_allocate(context, MOST_LINE_BYTES);
     if (!line)
         return SNOW_STATUS_NO_MEMORY;

@@ -142,11 +142,11 @@ static void begin_image(ome_text *t, const char **attributes) {
     snprintf(number, sizeof number, "%lld", (long long)t->number++);
     ome->images = t->number;
     if (used + 80 < sizeof ome->list)
-        snprintf(ome->list + used, sizeof ome->list - used, "%s%s \"%.48s\"",
-                 used ? ", " : "", number,
-                 name ? name
-                 : id ? id
-                      : "");
+        snow_append(ome->list, sizeof ome->list, "%s%s \"%.48s\"",
+                    used ? ", " : "", number,
+                    name ? name
+                    : id ? id
+                         : "");
     t->chosen = !t->done && (!t->wanted || !strcmp(t->wanted, number) ||
                              (name && !strcmp(t->wanted, name)) ||
                              (id && !strcmp(t->wanted, id)));
@@ -260,12 +260,10 @@ snow_status snow_tiff_read_ome(snow_source *source, const char *wanted,
         SNOW_TRY(SNOW_RESERVE(t.context, out->runs, 0, 1));
         out->runs[out->run_count++] = (tiff_run){.count = 0};
     }
-    out->files = out->member_count - 1;
+    bool has_own = false;
     for (size_t i = 0; i < out->run_count; i++)
-        if (!out->runs[i].file) {
-            out->files++;
-            break;
-        }
+        has_own |= !out->runs[i].file;
+    out->files = out->member_count - 1 + has_own;
     return SNOW_STATUS_OK;
 }
 

@@ -6,22 +6,11 @@
 #if SNOW_HAVE_TIFF
 
 #include "formats/array.h"
+#include "formats/bytes/number.h"
 
 #include <string.h>
 
 /* --- the layout of a page ------------------------------------------------- */
-
-static snow_type integer_type(uint16_t bits, bool is_signed) {
-    if (bits <= 8)
-        return is_signed ? SNOW_TYPE_INT8 : SNOW_TYPE_UINT8;
-    if (bits <= 16)
-        return is_signed ? SNOW_TYPE_INT16 : SNOW_TYPE_UINT16;
-    if (bits <= 32)
-        return is_signed ? SNOW_TYPE_INT32 : SNOW_TYPE_UINT32;
-    if (bits == 64)
-        return is_signed ? SNOW_TYPE_INT64 : SNOW_TYPE_UINT64;
-    return SNOW_TYPE_NONE;
-}
 
 static bool parse_type(uint16_t bits, uint16_t format, tiff_page *page) {
     page->coding = TIFF_PLAIN;
@@ -29,9 +18,8 @@ static bool parse_type(uint16_t bits, uint16_t format, tiff_page *page) {
     if (format == SAMPLEFORMAT_IEEEFP) {
         if (bits == 16)
             page->coding = TIFF_HALF;
-        page->type = bits == 16 || bits == 32 ? SNOW_TYPE_FLOAT32
-                     : bits == 64             ? SNOW_TYPE_FLOAT64
-                                              : SNOW_TYPE_NONE;
+        if (bits % 8 == 0)
+            page->type = snow_type_of_kind('f', bits == 16 ? 4 : bits / 8U);
     } else if (bits &&
                (format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_INT ||
                 format == SAMPLEFORMAT_VOID || bits == 1)) {
@@ -40,7 +28,11 @@ static bool parse_type(uint16_t bits, uint16_t format, tiff_page *page) {
         else if (bits % 8)
             page->coding = TIFF_PACKED;
         page->is_signed = format == SAMPLEFORMAT_INT && bits > 1;
-        page->type = integer_type(bits, page->is_signed);
+        page->type = snow_type_of_kind(page->is_signed ? 'i' : 'u',
+                                       bits <= 8    ? 1
+                                       : bits <= 16 ? 2
+                                       : bits <= 32 ? 4
+                                                    : bits / 8U);
     }
     return page->type != SNOW_TYPE_NONE;
 }
@@ -147,17 +139,15 @@ typedef struct tiff_block {
     uint64_t row_bytes;
 } tiff_block;
 
-/* In the machine's byte order, as from libtiff, and sign extended. */
-static void put_triple(const unsigned char *at, bool is_signed,
-                       unsigned char *out) {
-    bool big = snow_machine_big_endian();
-    uint32_t value = (uint32_t)at[big ? 0 : 2] << 16 | (uint32_t)at[1] << 8 |
-                     at[big ? 2 : 0];
-    if (is_signed && (value & 0x800000))
-        value |= 0xff000000;
-    memcpy(out, &value, sizeof value);
+/* Stores an integer of fewer bits than its type has, sign extended. */
+static void put_integer(const tiff_page *page, uint64_t value,
+                        unsigned char *out) {
+    if (page->is_signed && value >> (page->bits - 1))
+        value |= UINT64_MAX << page->bits;
+    snow_put_low(value, snow_type_size(page->type), out);
 }
 
+/* Values of whole bytes are in the machine's byte order, as from libtiff. */
 static void put_value(const tiff_page *page, const unsigned char *at,
                       unsigned char *out) {
     uint16_t half;
@@ -169,7 +159,8 @@ static void put_value(const tiff_page *page, const unsigned char *at,
         memcpy(out, &wide, sizeof wide);
         break;
     case TIFF_TRIPLE:
-        put_triple(at, page->type == SNOW_TYPE_INT32, out);
+        put_integer(page, snow_number_at(at, 3, snow_machine_big_endian()),
+                    out);
         break;
     default:
         memcpy(out, at, page->bits / 8);
@@ -182,14 +173,7 @@ static void put_packed(const tiff_page *page, const unsigned char *row,
     uint64_t value = 0;
     for (uint64_t bit = at * page->bits; bit < (at + 1) * page->bits; bit++)
         value = value << 1 | (row[bit / 8] >> (7 - bit % 8) & 1);
-    if (page->is_signed && value >> (page->bits - 1))
-        value |= UINT64_MAX << page->bits;
-    const uint32_t wide = (uint32_t)value;
-    const uint16_t half = (uint16_t)value;
-    const size_t size = snow_type_size(page->type);
-    *out = (unsigned char)value;
-    if (size > 1)
-        memcpy(out, size == 2 ? (const void *)&half : &wide, size);
+    put_integer(page, value, out);
 }
 
 static void flip(const tiff_page *page, int64_t count, unsigned char *out) {
@@ -254,53 +238,41 @@ static snow_status make_buffer(const snow_tiff *file, const tiff_page *page,
     return *out ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
 }
 
-/* Strips are rows of full width. */
-static snow_status read_strips(snow_tiff *file, const tiff_page *page,
+/* Tiles, or strips, which are as wide as the page, and of which the last may be
+ * lower. */
+static snow_status read_blocks(snow_tiff *file, const tiff_page *page,
                                int64_t sample, const snow_region *w,
                                unsigned char *buffer, unsigned char *slice) {
     TIFF *tiff = file->tiff;
-    uint32_t rows = 0;
-    TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &rows);
-    if (rows < 1 || rows > page->height)
-        rows = (uint32_t)page->height;
-    int64_t first = w->first[1] / rows * rows;
-    uint64_t row_bytes = TIFFScanlineSize64(tiff);
-    for (int64_t y = first; y < w->first[1] + w->count[1]; y += rows) {
-        int64_t height = page->height - y < rows ? page->height - y : rows;
-        uint32_t strip = TIFFComputeStrip(
-            tiff, (uint32_t)y, page->separate ? (uint16_t)sample : 0);
-        SNOW_TRY(snow_tiff_decode(file, strip, buffer,
-                                  (uint64_t)height * row_bytes, row_bytes));
-        const tiff_block block = {buffer,   0,
-                                  y,        page->width,
-                                  height,   page->separate ? 1 : page->samples,
-                                  row_bytes};
-        put_block(page, &block, page->separate ? 0 : sample, w, slice);
-    }
-    return SNOW_STATUS_OK;
-}
-
-static snow_status read_tiles(snow_tiff *file, const tiff_page *page,
-                              int64_t sample, const snow_region *w,
-                              unsigned char *buffer, unsigned char *slice) {
-    TIFF *tiff = file->tiff;
-    uint32_t wide = 0, high = 0;
-    uint64_t row_bytes = TIFFTileRowSize64(tiff);
+    const bool tiled = TIFFIsTiled(tiff);
+    const uint16_t plane = page->separate ? (uint16_t)sample : 0;
+    const uint64_t row_bytes =
+        tiled ? TIFFTileRowSize64(tiff) : TIFFScanlineSize64(tiff);
+    uint32_t wide = tiled ? 0 : (uint32_t)page->width, high = 0;
     TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &wide);
-    TIFFGetField(tiff, TIFFTAG_TILELENGTH, &high);
+    TIFFGetFieldDefaulted(
+        tiff, tiled ? TIFFTAG_TILELENGTH : TIFFTAG_ROWSPERSTRIP, &high);
+    if (!tiled && (high < 1 || high > page->height))
+        high = (uint32_t)page->height;
     if (wide < 1 || high < 1)
         return snow_tiff_fail(file);
     for (int64_t y = w->first[1] / high * high; y < w->first[1] + w->count[1];
          y += high)
         for (int64_t x = w->first[0] / wide * wide;
              x < w->first[0] + w->count[0]; x += wide) {
-            uint32_t tile =
-                TIFFComputeTile(tiff, (uint32_t)x, (uint32_t)y, 0,
-                                page->separate ? (uint16_t)sample : 0);
-            SNOW_TRY(snow_tiff_decode(file, tile, buffer, TIFFTileSize64(tiff),
-                                      row_bytes));
+            const bool low = !tiled && page->height - y < high;
+            const int64_t height = low ? page->height - y : high;
+            SNOW_TRY(snow_tiff_decode(
+                file,
+                tiled
+                    ? TIFFComputeTile(tiff, (uint32_t)x, (uint32_t)y, 0, plane)
+                    : TIFFComputeStrip(tiff, (uint32_t)y, plane),
+                buffer,
+                tiled ? TIFFTileSize64(tiff) : (uint64_t)height * row_bytes,
+                row_bytes));
             const tiff_block block = {
-                buffer,   x, y, wide, high, page->separate ? 1 : page->samples,
+                buffer,   x,      y,
+                wide,     height, page->separate ? 1 : page->samples,
                 row_bytes};
             put_block(page, &block, page->separate ? 0 : sample, w, slice);
         }
@@ -310,15 +282,12 @@ static snow_status read_tiles(snow_tiff *file, const tiff_page *page,
 snow_status snow_tiff_read_page(snow_tiff *file, const tiff_page *page,
                                 int64_t sample, const snow_region *region,
                                 unsigned char *slice) {
-    bool tiled = TIFFIsTiled(file->tiff);
     unsigned char *buffer;
     SNOW_TRY(make_buffer(file, page,
-                         tiled ? TIFFTileSize64(file->tiff)
-                               : TIFFStripSize64(file->tiff),
+                         TIFFIsTiled(file->tiff) ? TIFFTileSize64(file->tiff)
+                                                 : TIFFStripSize64(file->tiff),
                          &buffer));
-    snow_status status =
-        tiled ? read_tiles(file, page, sample, region, buffer, slice)
-              : read_strips(file, page, sample, region, buffer, slice);
+    snow_status status = read_blocks(file, page, sample, region, buffer, slice);
     snow_release(file->context, buffer);
     return status;
 }

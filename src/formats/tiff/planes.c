@@ -1,8 +1,8 @@
 /* formats/tiff/planes.c - which planes of an image are there, on which pages,
  * and the voxels of those that are wanted. */
+#include "formats/array.h"
 #include "formats/tiff/tiff.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #if SNOW_HAVE_TIFF && !SNOW_LOADS
@@ -108,21 +108,21 @@ typedef struct gaps {
 
 static void add_gap(gaps *g, const tiff_plan *plan, int64_t c, int64_t t,
                     int64_t first, int64_t last) {
-    const size_t used = strlen(g->text), room = sizeof g->text - used;
-    char step[40] = "", channel[40] = "", end[40] = "";
-    if (room < 120) {
+    const size_t used = strlen(g->text), size = sizeof g->text;
+    if (size - used < 120) {
         if (g->text[used - 1] != '.')
-            memcpy(g->text + used, "; ...", 6);
+            snow_append(g->text, size, "; ...");
         return;
     }
+    if (used)
+        snow_append(g->text, size, "; ");
     if (plan->times > 1)
-        snprintf(step, sizeof step, "time step %lld, ", (long long)t);
+        snow_append(g->text, size, "time step %lld, ", (long long)t);
     if (plan->channels > 1)
-        snprintf(channel, sizeof channel, "channel %lld, ", (long long)c);
+        snow_append(g->text, size, "channel %lld, ", (long long)c);
+    snow_append(g->text, size, "slice %lld", (long long)first);
     if (last > first)
-        snprintf(end, sizeof end, " to %lld", (long long)last);
-    snprintf(g->text + used, room, "%s%s%sslice %lld%s", used ? "; " : "", step,
-             channel, (long long)first, end);
+        snow_append(g->text, size, " to %lld", (long long)last);
 }
 
 /* Looks for slices of one channel and step. */
@@ -154,13 +154,10 @@ static snow_status find_gaps(tiff_set *set, const tiff_plan *plan, int64_t c,
 static snow_status check_size(const tiff_set *set, const tiff_plan *plan,
                               int64_t images, uint64_t size) {
     const tiff_page *page = &plan->page;
-    uint64_t bits;
-    bool counts =
-        snow_mul_u64((uint64_t)page->width, (uint64_t)page->height, &bits) &&
-        snow_mul_u64(bits, (uint64_t)page->samples, &bits) &&
-        snow_mul_u64(bits, (uint64_t)images, &bits) &&
-        snow_mul_u64(bits, page->bits, &bits);
-    if (counts && snow_tiff_least(page, bits / 8) <= size)
+    const int64_t sizes[] = {page->width, page->height, page->samples, images};
+    uint64_t steps[4], bits;
+    if (snow_array_steps(sizes, 4, page->bits, steps, &bits) &&
+        snow_tiff_least(page, bits / 8) <= size)
         return SNOW_STATUS_OK;
     return snow_fail(set->context, SNOW_STATUS_BAD_INPUT,
                      "claims %lld images of %lldx%lld pixels, which its %llu "

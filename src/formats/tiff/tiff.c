@@ -38,9 +38,7 @@ static void take_for_slices(snow_context *context, tiff_plan *plan) {
  * without one all pages are slices. */
 static snow_status share_planes(snow_context *context, tiff_plan *plan) {
     const tiff_shape *shape = &plan->shape;
-    int64_t sizes[3] = {shape->channels ? shape->channels : 1,
-                        shape->slices ? shape->slices : 1,
-                        shape->frames ? shape->frames : 1};
+    const int64_t sizes[3] = {shape->channels, shape->slices, shape->frames};
     uint64_t all;
     int64_t *steps[3] = {&plan->channel_step, &plan->slice_step,
                          &plan->time_step};
@@ -156,10 +154,8 @@ static snow_status count_raw(const snow_tiff *file, tiff_plan *plan) {
 static snow_status plan_pages(tiff_set *set, tiff_plan *plan) {
     tiff_shape *shape = &plan->shape;
     tiff_reader *own = &set->own;
-    const int64_t c = shape->channels ? shape->channels : 1;
-    const int64_t z = shape->slices ? shape->slices : 1;
-    const int64_t t = shape->frames ? shape->frames : 1;
-    const double said = (double)c * (double)z * (double)t;
+    const double said =
+        (double)shape->channels * (double)shape->slices * (double)shape->frames;
     const int64_t most = shape->images > 1 ? shape->images : INT64_MAX;
     SNOW_TRY(snow_tiff_list_pages(own, false, &plan->page, most));
     if (!TIFFSetSubDirectory(own->file.tiff, *own->pages))
@@ -173,14 +169,14 @@ static snow_status plan_pages(tiff_set *set, tiff_plan *plan) {
     if (!*shape->order)
         memcpy(shape->order, "XYCZT", sizeof shape->order);
     SNOW_TRY(share_planes(set->context, plan));
-    if (plan->present > plan->planes)
+    if (plan->present > plan->planes) {
         snow_notify(set->context,
                     "%lld pages beyond the %lld images of its description are "
                     "left out",
                     (long long)(plan->present - plan->planes),
                     (long long)plan->planes);
-    if (plan->present > plan->planes)
         plan->present = plan->planes;
+    }
     SNOW_TRY(count_raw(&own->file, plan));
     return snow_tiff_check_count(set, plan->present, plan->planes);
 }
@@ -383,11 +379,7 @@ static snow_status read_box(tiff_set *set, const tiff_plan *plan, bool gaps,
     if (status == SNOW_STATUS_OK && gaps)
         status = leave_gaps(&volume, plan->shape.nodata, missing);
     snow_release(set->context, missing);
-    if (status != SNOW_STATUS_OK)
-        snow_volume_close(volume);
-    else
-        *out = volume;
-    return status;
+    return snow_volume_give(status, volume, out);
 }
 
 /* Channels are samples of a pixel or pages of their own. */
@@ -432,23 +424,11 @@ static snow_status read_tiff(snow_source *source,
 
 #elif SNOW_LOADS && SNOW_HAVE_TIFF
 
-static snow_status read_tiff(snow_source *source,
-                             const snow_volume_options *options,
-                             snow_volume_info *info, snow_volume **out) {
-    return snow_read_by_module("tiff", source, options, info, out);
-}
+SNOW_READ_BY_MODULE(read_tiff, "tiff")
 
 #else
 
-static snow_status read_tiff(snow_source *source,
-                             const snow_volume_options *options,
-                             snow_volume_info *info, snow_volume **out) {
-    (void)options;
-    (void)info;
-    (void)out;
-    return snow_fail_unbuilt(snow_source_context(source), "TIFF",
-                             "libtiff-dev");
-}
+SNOW_READ_UNBUILT(read_tiff, "TIFF", "libtiff-dev")
 
 #endif
 

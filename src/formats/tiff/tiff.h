@@ -1,13 +1,11 @@
 /* formats/tiff/tiff.h - the parts of the TIFF reader, private to this folder.
  *
  *   tiff.c   the file -> the pages that are slices, the volume
- *   text.c   descriptions by ImageJ -> tiff_shape
- *   shaped.c   those by tifffile
+ *   text.c   descriptions by ImageJ and tifffile -> tiff_shape
  *   ome.c    OME-XML -> tiff_shape, and which page has which plane
  *   set.c    the files that OME-XML names
  *   planes.c   planes that are there or missing -> the volume's voxels
- *   makers.c   private tags of other programs
- *   channels.c   what it says of channels
+ *   tags.c   what tags say of channels and missing values
  *   page.c   a page -> voxels of a slice, by libtiff */
 #ifndef SNOW_FORMATS_TIFF_TIFF_H
 #define SNOW_FORMATS_TIFF_TIFF_H
@@ -15,7 +13,8 @@
 #include "formats/format.h"
 #include "io/tiff.h"
 
-/* What a description says about all pages together; 0 and "" if nothing. */
+/* What a description says about all pages together; 0 and "" if nothing, and 1
+ * of channels, slices and frames. */
 typedef struct tiff_shape {
     bool imagej;    /* written by ImageJ */
     bool metamorph; /* ... by MetaMorph: planes lie behind the first page */

@@ -8,7 +8,8 @@
  * its scalars, otherwise the first; arrays of points have priority over those
  * of cells. */
 #include "formats/ascii.h"
-#include "formats/bytes/lz4.h"
+#include "formats/bytes/packed.h"
+#include "formats/features.h"
 #include "formats/index/index.h"
 #include "formats/vtk/vti.h"
 

@@ -56,24 +56,10 @@ static snow_status check_bytes(const zarr_array *array) {
     return ZARR_FAIL(array, "has sizes too large for any array; it is damaged");
 }
 
-static snow_type type_of(char kind, size_t width) {
-    if (kind == 'f')
-        return width == 8                 ? SNOW_TYPE_FLOAT64
-               : width == 2 || width == 4 ? SNOW_TYPE_FLOAT32
-                                          : SNOW_TYPE_NONE;
-    if (kind == 'b')
-        return width == 1 ? SNOW_TYPE_UINT8 : SNOW_TYPE_NONE;
-    return kind == 'i' || kind == 'u' ? snow_type_of_integer(width, kind == 'i')
-                                      : SNOW_TYPE_NONE;
-}
-
 static snow_status take_type(char kind, size_t width, const char *given,
                              zarr_array *array) {
-    array->type = type_of(kind, width);
+    array->type = snow_numpy_type(kind, width, &array->values);
     array->width = width;
-    array->values = kind == 'b'                 ? SNOW_CODING_BOOL
-                    : kind == 'f' && width == 2 ? SNOW_CODING_HALF
-                                                : SNOW_CODING_PLAIN;
     if (array->type)
         return SNOW_STATUS_OK;
     return ZARR_FAIL(array,

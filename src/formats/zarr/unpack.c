@@ -3,8 +3,8 @@
  * The size that the compressed bytes claim is first compared with that of a
  * chunk: a file with a false size is refused before memory is allocated.
  * Libraries are then called for exactly that many bytes. */
-#include "formats/bytes/lz4.h"
 #include "formats/bytes/number.h"
+#include "formats/bytes/packed.h"
 #include "formats/features.h"
 #include "formats/zarr/zarr.h"
 

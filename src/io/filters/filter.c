@@ -41,6 +41,17 @@ void *snow_filter_stage_allocate(snow_context *context, size_t bytes) {
     return filter;
 }
 
+void *snow_filter_stage_over(snow_filter_stage *below, size_t bytes) {
+    snow_filter_stage *filter =
+        snow_filter_stage_allocate(below->context, bytes);
+    if (!filter)
+        return NULL;
+    filter->name = below->name;
+    filter->below = below;
+    filter->size = -1;
+    return filter;
+}
+
 /* From the top down: an upper stage may use the buffer below. */
 void snow_filter_stage_close(snow_filter_stage *filter) {
     while (filter) {

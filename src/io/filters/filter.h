@@ -91,6 +91,9 @@ void snow_filter_stage_close(snow_filter_stage *filter);
  * open stages. */
 void *snow_filter_stage_allocate(snow_context *context, size_t bytes);
 
+/* The same for a stage that is laid over one, with bytes of unknown number. */
+void *snow_filter_stage_over(snow_filter_stage *below, size_t bytes);
+
 /* Buffers at least `size` (at most SNOW_FILTER_BYTES) bytes unless the data end
  * before, and more up to the horizon if one is set. */
 snow_status snow_filter_stage_fill(snow_filter_stage *filter, size_t size);

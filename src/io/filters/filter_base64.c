@@ -156,15 +156,11 @@ static uint64_t limit_base64(const snow_filter_stage *filter) {
 
 snow_status snow_filter_stage_open_base64(snow_filter_stage *below,
                                           snow_filter_stage **out) {
-    base64_filter *reader =
-        snow_filter_stage_allocate(below->context, sizeof *reader);
+    base64_filter *reader = snow_filter_stage_over(below, sizeof *reader);
     if (!reader)
         return SNOW_STATUS_NO_MEMORY;
-    reader->filter.name = below->name;
-    reader->filter.below = below;
     reader->filter.pull = pull_base64;
     reader->filter.limit = limit_base64;
-    reader->filter.size = -1;
     *out = &reader->filter;
     return SNOW_STATUS_OK;
 }

@@ -244,8 +244,7 @@ snow_status snow_filter_stage_open_blocks(snow_filter_stage *below,
                          "%s: its compressed blocks are larger than the file; "
                          "it is truncated or damaged",
                          below->name);
-    blocks_filter *filter =
-        snow_filter_stage_allocate(below->context, sizeof *filter);
+    blocks_filter *filter = snow_filter_stage_over(below, sizeof *filter);
     if (!filter)
         return SNOW_STATUS_NO_MEMORY;
     snow_zlib_use(&filter->stream, below->context);
@@ -253,8 +252,6 @@ snow_status snow_filter_stage_open_blocks(snow_filter_stage *below,
         snow_release(below->context, filter);
         return SNOW_STATUS_NO_MEMORY; /* snow_allocate set the message */
     }
-    filter->filter.name = below->name;
-    filter->filter.below = below;
     filter->filter.pull = pull_blocks;
     filter->filter.jump = jump_blocks;
     filter->filter.fini = end_blocks;

@@ -100,24 +100,20 @@ static void end_inflate(snow_filter_stage *filter) {
 snow_status snow_filter_stage_open_inflate(snow_filter_stage *below,
                                            snow_filter_stage **out) {
     SNOW_TRY(snow_filter_stage_fill(below, 4));
-    inflate_filter *inflater =
-        snow_filter_stage_allocate(below->context, sizeof *inflater);
+    inflate_filter *inflater = snow_filter_stage_over(below, sizeof *inflater);
     if (!inflater)
         return SNOW_STATUS_NO_MEMORY;
     z_stream *stream = &inflater->stream;
     snow_zlib_use(stream, below->context);
     /* 15: the largest window; + 32: gzip or zlib, according to the header. */
     int answer = inflateInit2(stream, 15 + 32);
-    inflater->filter.name = below->name;
     snow_status status = check_inflate(inflater, answer);
     if (status != SNOW_STATUS_OK) {
         snow_release(below->context, inflater);
         return status;
     }
-    inflater->filter.below = below;
     inflater->filter.pull = pull_inflated;
     inflater->filter.fini = end_inflate;
-    inflater->filter.size = -1;
     inflater->gzip = snow_looks_gzip(below->buffer + below->begin,
                                      below->end - below->begin);
     below->context->inflates = true;

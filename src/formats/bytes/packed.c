@@ -1,6 +1,6 @@
-/* formats/bytes/bzip2.c - unpacks bzip2, of whole files and of NRRD's data, by
- * libbz2. */
-#include "formats/bytes/bzip2.h"
+/* formats/bytes/packed.c - unpacks bzip2, of whole files and of NRRD's data, by
+ * libbz2, and blocks of LZ4 by liblz4. */
+#include "formats/bytes/packed.h"
 #include "formats/features.h"
 
 #include <string.h>
@@ -111,8 +111,7 @@ static uint64_t limit_bzip2(const snow_filter_stage *filter) {
 
 static snow_status open_bzip2(snow_filter_stage *below,
                               snow_filter_stage **out) {
-    bzip2_filter *bzip2 =
-        snow_filter_stage_allocate(below->context, sizeof *bzip2);
+    bzip2_filter *bzip2 = snow_filter_stage_over(below, sizeof *bzip2);
     if (!bzip2)
         return SNOW_STATUS_NO_MEMORY;
     snow_status status = begin_bzip2(bzip2);
@@ -120,12 +119,9 @@ static snow_status open_bzip2(snow_filter_stage *below,
         snow_release(below->context, bzip2);
         return status;
     }
-    bzip2->filter.name = below->name;
-    bzip2->filter.below = below;
     bzip2->filter.pull = pull_bzip2;
     bzip2->filter.limit = limit_bzip2;
     bzip2->filter.fini = end_bzip2;
-    bzip2->filter.size = -1;
     below->context->inflates = true;
     *out = &bzip2->filter;
     return SNOW_STATUS_OK;
@@ -144,3 +140,34 @@ static snow_status open_bzip2(snow_filter_stage *below,
 snow_status snow_source_unpack_bzip2(snow_source *source) {
     return snow_source_unpack_by(source, open_bzip2);
 }
+
+/* --- LZ4 ------------------------------------------------------------------ */
+
+#if SNOW_HAVE_LZ4
+
+#include <limits.h>
+#include <lz4.h>
+
+snow_status snow_lz4_need(snow_context *context) {
+    (void)context;
+    return SNOW_STATUS_OK;
+}
+
+bool snow_lz4_unpack(const void *packed, size_t size, void *out, size_t bytes) {
+    return size <= INT_MAX && bytes <= INT_MAX &&
+           LZ4_decompress_safe(packed, out, (int)size, (int)bytes) ==
+               (int)bytes;
+}
+
+#else
+
+snow_status snow_lz4_need(snow_context *context) {
+    return snow_fail_unbuilt(context, "LZ4", "liblz4-dev");
+}
+
+bool snow_lz4_unpack(const void *packed, size_t size, void *out, size_t bytes) {
+    (void)packed, (void)size, (void)out, (void)bytes;
+    return false;
+}
+
+#endif
