@@ -43,7 +43,8 @@ typedef enum snow_range {
     SNOW_RANGE_VALUES,      /* low to high, data values */
     SNOW_RANGE_PERCENTILES, /* low to high, percent of the finite voxels */
     SNOW_RANGE_ROBUST,      /* the file's window, else FULL but far outliers */
-    SNOW_RANGE_SLICES       /* the same of one slice, or of several for all */
+    SNOW_RANGE_SLICES,      /* the same of one slice, or of several for all */
+    SNOW_RANGE_LEAST        /* for smallest values: of CT air, else ROBUST */
 } snow_range;
 
 typedef enum snow_domain { /* what the values of control points mean */

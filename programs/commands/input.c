@@ -235,7 +235,9 @@ snow_look look_options(const options *opts) {
     if (mode_is_projection(opts->mode) && !look.preset && !look.base) {
         look.preset = "linear";
         if (look.range == SNOW_RANGE_AUTO)
-            look.range = automatic_range(opts);
+            look.range = strcmp(opts->mode, "minip") == 0
+                             ? SNOW_RANGE_LEAST
+                             : automatic_range(opts);
     }
     if (opts->opacities.count) {
         look.opacities = opts->opacities.points;

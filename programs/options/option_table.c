@@ -141,8 +141,8 @@ const option_row option_table[] = {
      "other methods have one quality (default normal)"},
 
     {"view", 0, "NAME", TOPIC_CAMERA, RENDER, read_view, FIELD(view), 0, 0, "side that the camera is on (default anterior for a file with a medical "
-     "orientation, otherwise +z; a volume thinner than a quarter of its shorter "
-     "side is shown from its face)"},
+     "orientation, oblique for floats without, otherwise +z; a volume thinner than a "
+     "quarter of its shorter side is shown from its face)"},
     {"azimuth", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real, FIELD(azimuth),
      0, 0, "move the camera to its right around the up axis (default 0)"},
     {"elevation", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real,

@@ -305,7 +305,7 @@ def begin(volume: Volume, look: Any, options: Mapping[str, Any]
     """The drawing, and the recipe that a page begins with."""
     chosen = look_of(look)
     unsayable = chosen if chosen.colors is not None or \
-        chosen.range in ("robust", "slices") else None
+        chosen.range in ("robust", "slices", "least") else None
     mixed = volume._mixed
     if mixed is not None:
         if volume._source is None:

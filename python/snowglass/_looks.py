@@ -22,7 +22,9 @@ class Look:
                   are spread; "full": from the smallest to the largest;
                   "1%,99%": percentiles; "robust": the window that the file
                   names, or all values but a few far off; "slices": the same as
-                  for slices, up to 1 %; None: chosen (`clim` is another name)
+                  for slices, up to 1 %; "least": the same as "robust", but of
+                  CT air, -1000 to -500, as for mode minip; None: chosen
+                  (`clim` is another name)
     opacity       [(value, opacity), ...], opacities 0 to 1 at data values; they
                   replace those of a preset
     colors        [(value, (red, green, blue)), ...], 0 to 1
@@ -166,7 +168,7 @@ def _parse_range(given: Optional[Range]) -> tuple[str, float, float]:
     kind = "values"
     ends: Any = given
     if isinstance(given, str):
-        if given in ("auto", "full", "robust", "slices"):
+        if given in ("auto", "full", "robust", "slices", "least"):
             return given, 0.0, 0.0
         words = [word.strip() for word in given.split(",")]
         if all(word.endswith("%") for word in words):

@@ -70,7 +70,7 @@ def _look_keys(look: Look) -> dict[str, Any]:
     if look.colors is not None:
         raise ValueError("a look with colors of its own is no recipe: name a "
                          "preset or a colormap")
-    if look.range in ("robust", "slices"):
+    if look.range in ("robust", "slices", "least"):
         raise ValueError(f"a range {look.range!r} is no recipe: give (low, high)")
     keys = {name: getattr(look, name) for name in LOOK}
     if look.range == "auto":

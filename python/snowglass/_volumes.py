@@ -763,7 +763,7 @@ def _chosen(look: Union[Look, str, None], mode: str) -> Look:
         # Over the file's window, or all values but a few far off.
         if not is_ranged(chosen):
             chosen = dataclasses.replace(
-                chosen, range="slices" if mode == "slice" else "robust")
+                chosen, range={"slice": "slices", "minip": "least"}.get(mode, "robust"))
     return chosen
 
 

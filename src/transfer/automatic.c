@@ -28,6 +28,7 @@
  *                  ...-------'        0.25 a little above the threshold
  *   ______.....---'                   0.05 at it, 0 at the faint threshold */
 #include "transfer/look.h"
+#include "volume/field.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -340,19 +341,10 @@ static bool is_beyond_fractions(const snow_histogram *histogram) {
                                        : false;
 }
 
-/* Returns whether values may be those of a computed field rather than of a
- * scan: numbers with fractions, in no patient and no format of microscopes,
- * unless it names their quantity, as data sets in Zarr do. */
+/* Numbers with fractions where a field may be. */
 static bool is_field(const snow_histogram *histogram) {
-    static const char *const images[] = {"mrc", "tiff", "zarr"};
-    const snow_volume_info *info = &histogram->volume->info;
-    bool found = (histogram->fractions || is_beyond_fractions(histogram)) &&
-                 !info->whole && !info->eight_bits && !info->medical &&
-                 !*info->modality;
-    for (size_t n = 0; n < sizeof images / sizeof *images; n++)
-        found =
-            found && (*info->quantity || strcmp(info->format, images[n]) != 0);
-    return found;
+    return (histogram->fractions || is_beyond_fractions(histogram)) &&
+           snow_volume_may_be_field(&histogram->volume->info);
 }
 
 /* Voxels of either sign that are left out of a field's reach, as those of noise
@@ -417,6 +409,25 @@ static snow_status build_preset(const snow_histogram *histogram, int preset,
 /* A few values are left out at the top of a field. */
 #define FIELD_TOP 0.9995
 
+/* Where the middle one of the values is so far from the lowest, there is no
+ * background, and the upper half is shown, however few values are high. */
+#define MIDDLE 0.05
+
+static snow_status lower_to_middle(const snow_histogram *histogram,
+                                   const snow_histogram_split *p, double top,
+                                   double *start, double *threshold,
+                                   double *object) {
+    const double shares[] = {0.5, 0.75, 0.95};
+    double q[3];
+    SNOW_TRY(snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, shares, 3, q));
+    if (q[0] < snow_between_on(histogram->scale, p->low, top, MIDDLE))
+        return SNOW_STATUS_OK;
+    *start = fmin(*start, q[0]);
+    *threshold = fmin(*threshold, q[1]);
+    *object = fmin(*object, q[2]);
+    return SNOW_STATUS_OK;
+}
+
 /* Fields have no surfaces to shade: a veil through which one sees denser parts,
  * in colours that show the values.  Where all is one cluster its lower half is
  * clear. */
@@ -436,6 +447,7 @@ static snow_status build_field(const snow_histogram *histogram,
         threshold = snow_between_on(histogram->scale, p->low, top, 0.6);
         object = snow_between_on(histogram->scale, p->low, top, 0.75);
     }
+    SNOW_TRY(lower_to_middle(histogram, p, top, &start, &threshold, &object));
     builder->name = builder->colormap = "viridis";
     builder->unshaded = true;
     builder->low = start;
@@ -480,6 +492,7 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
     }
     bool slice = is_slice(histogram), shown;
     int preset = -1;
+    p.low = snow_hounsfield_floor(histogram, p.low);
     if (slice)
         SNOW_TRY(snow_window_of(histogram, builder, &p.low, &p.high, &shown));
     else if (look->range == SNOW_RANGE_AUTO && !p.fills_volume)

@@ -112,20 +112,45 @@ static snow_status leave_out(const snow_histogram *histogram, double most,
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_robust_range(const snow_histogram *histogram, bool slices,
+/* Hounsfield units: air between tissue, which the smallest values along rays
+ * show; and the least that a scanner measures, below which voxels are padded.
+ */
+#define AIR_LOW (-1000)
+#define AIR_HIGH (-500)
+#define FLOOR (-1024)
+
+double snow_hounsfield_floor(const snow_histogram *histogram, double low) {
+    const bool is = snow_are_hounsfield(&histogram->volume->info,
+                                        histogram->min, histogram->max);
+    return is && low < FLOOR && histogram->max > FLOOR ? FLOOR : low;
+}
+
+static bool shows_air(const snow_histogram *histogram, snow_range range) {
+    return range == SNOW_RANGE_LEAST && !histogram->scale.log &&
+           snow_are_hounsfield(&histogram->volume->info, histogram->min,
+                               histogram->max);
+}
+
+snow_status snow_robust_range(const snow_histogram *histogram, snow_range kind,
                               double *low, double *high,
                               snow_transfer_builder *builder) {
     const double full[2] = {*low, *high}, count = (double)histogram->finite;
     double range[2] = {*low, *high};
     bool is;
+    if (shows_air(histogram, kind)) {
+        *low = AIR_LOW;
+        *high = AIR_HIGH;
+        strcpy(builder->range_note, "; air in Hounsfield units");
+        return SNOW_STATUS_OK;
+    }
     SNOW_TRY(snow_window_of(histogram, builder, low, high, &is));
     if (is || histogram->scale.log || !histogram->finite)
         return SNOW_STATUS_OK;
     SNOW_TRY(
         leave_out(histogram, fmax(FEW_LEAST, FEW * count), FEW_PAY, range));
-    if (slices)
+    if (kind == SNOW_RANGE_SLICES)
         SNOW_TRY(leave_out(histogram, MANY * count, MANY_PAY, range));
-    *low = range[0];
+    *low = snow_hounsfield_floor(histogram, range[0]);
     *high = range[1];
     if (*low > full[0] || *high < full[1])
         snow_text_print(builder->range_note, sizeof builder->range_note,

@@ -196,14 +196,19 @@ snow_status snow_object_range(const snow_histogram *histogram, double *low,
                               double *high);
 
 /* The window of the file, unless it has none, or none for these values; *is:
- * it has.  Else all values of low..high but a few far off, of slices up to 1 %.
- * Both leave a note.  Errors: those of snow_count_bins. */
+ * it has.  Else all values of low..high but a few far off, of slices up to 1 %,
+ * of CT from -1024 on; of the smallest values of CT those of lungs.  Both leave
+ * a note.
+ * Errors: those of snow_count_bins. */
 snow_status snow_window_of(const snow_histogram *histogram,
                            snow_transfer_builder *builder, double *low,
                            double *high, bool *is);
-snow_status snow_robust_range(const snow_histogram *histogram, bool slices,
+snow_status snow_robust_range(const snow_histogram *histogram, snow_range range,
                               double *low, double *high,
                               snow_transfer_builder *builder);
+
+/* The low end of a range; of CT at least -1024, since padding is lower. */
+double snow_hounsfield_floor(const snow_histogram *histogram, double low);
 
 /* "grey 72..213; opacity 0 at 72, 0.4 at 213 (from the histogram)", for
  * snow_transfer_describe. */

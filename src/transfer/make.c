@@ -77,9 +77,8 @@ static snow_status resolve_range(const snow_histogram *histogram,
         *low = look->low;
         *high = look->high;
     }
-    if (look->range == SNOW_RANGE_ROBUST || look->range == SNOW_RANGE_SLICES)
-        return snow_robust_range(histogram, look->range == SNOW_RANGE_SLICES,
-                                 low, high, builder);
+    if (look->range >= SNOW_RANGE_ROBUST)
+        return snow_robust_range(histogram, look->range, low, high, builder);
     if (look->range != SNOW_RANGE_PERCENTILES || !histogram->finite)
         return SNOW_STATUS_OK;
     const double shares[2] = {look->low / 100, look->high / 100};
@@ -195,8 +194,8 @@ static snow_histogram_need need_of_range(const snow_volume *volume,
                                          const snow_look *points) {
     snow_domain values = points ? points->domain : SNOW_DOMAIN_DATA;
     if (look->range == SNOW_RANGE_PERCENTILES ||
-        look->range == SNOW_RANGE_ROBUST || look->range == SNOW_RANGE_SLICES ||
-        values == SNOW_DOMAIN_OBJECT || values == SNOW_DOMAIN_SYMMETRIC)
+        look->range >= SNOW_RANGE_ROBUST || values == SNOW_DOMAIN_OBJECT ||
+        values == SNOW_DOMAIN_SYMMETRIC)
         return SNOW_NEED_COUNTS;
     if (look->range == SNOW_RANGE_FULL || values == SNOW_DOMAIN_RANGE ||
         (look->symlog < 0 && look->range != SNOW_RANGE_VALUES))

@@ -4,6 +4,7 @@
  * up, back, with back pointing from the target to the camera. */
 
 #include "transform/transform.h"
+#include "volume/field.h"
 #include "volume/volume.h"
 
 #include <math.h>
@@ -23,6 +24,10 @@ static const struct {
     {"superior", {0, 0, 1}, {0, 1, 0}},
     {"inferior", {0, 0, -1}, {0, 1, 0}},
     {"iso", {THIRD, THIRD, THIRD}, {-SIXTH, -SIXTH, 2 * SIXTH}},
+    /* From the front, 30 degrees to the right and 25 up. */
+    {"oblique",
+     {0.45315389351832497, -0.7848855672213958, 0.42261826174069944},
+     {-0.21130913087034972, 0.36599815077066683, 0.9063077870366499}},
     {"+x", {1, 0, 0}, {0, 0, 1}},
     {"-x", {-1, 0, 0}, {0, 0, 1}},
     {"+y", {0, 1, 0}, {0, 0, 1}},
@@ -61,12 +66,25 @@ snow_status snow_view_from_name(snow_context *context, const char *name,
         memcpy(view.up, views[i].up, sizeof view.up);
         return SNOW_RECORD_FILL(context, snow_view, &view, out);
     }
-    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                     "unknown view '%s': must be anterior, posterior, left, "
-                     "right, superior, inferior, iso, axial, coronal, "
-                     "sagittal, front, back, top, bottom, +x, -x, +y, -y, +z "
-                     "or -z",
-                     name);
+    return snow_fail(
+        context, SNOW_STATUS_BAD_USAGE,
+        "unknown view '%s': must be anterior, posterior, left, "
+        "right, superior, inferior, iso, oblique, axial, "
+        "coronal, sagittal, front, back, top, bottom, +x, -x, +y, -y, +z "
+        "or -z",
+        name);
+}
+
+/* The most levels that are seen as a map, from above. */
+#define LEVELS 5
+
+/* A field with an inside and a height, which may also be a flat one, as that of
+ * an atmosphere. */
+static bool is_body_of_field(const snow_volume_info *info) {
+    return (info->type == SNOW_TYPE_FLOAT32 ||
+            info->type == SNOW_TYPE_FLOAT64) &&
+           snow_volume_may_be_field(info) && info->dims[0] > LEVELS &&
+           info->dims[1] > LEVELS && info->dims[2] > LEVELS;
 }
 
 /* Axial slices of patients are seen from the feet, as radiologists do. */
@@ -75,6 +93,8 @@ static const char *default_name(const snow_volume_info *info) {
                                             {"left", "anterior", "inferior"}};
     int thin = snow_volume_thin_axis(info), along = 0;
     double normal[3];
+    if (is_body_of_field(info))
+        return "oblique";
     if (thin < 0)
         return info->medical ? "anterior" : "+z";
     snow_slice_normal(info, thin, normal);

@@ -180,4 +180,55 @@ for intent, voxels in ((0, values), (5, values), (4, values ** 2)):
             "from percentile 95 of" not in said:
         oracle.fail(f"intent {intent}", f"{said!r}: not from "
                     f"{np.percentile(other, 95)} on")
+
+# --- fields without a patient ---------------------------------------------------
+
+
+def line(path, *options, verb="render"):
+    done = oracle.tool(verb, path, "-y", "-s", "64", "-o", "said.png", *options)
+    return done.stderr.strip().splitlines()[-1]
+
+
+wave = np.exp(0.6 * (BUMPS / 3 + np.sin(at[2] / 5)))
+for name, voxels, wanted in (
+        ("a field", wave, "view oblique"), ("in double", wave * 1.5, "view oblique"),
+        ("24 levels", wave[:24], "view oblique"), ("5 levels", wave[:5], "view +z"),
+        ("bytes", (wave * 9).astype("u1"), "view +z")):
+    if voxels.dtype == float and name != "in double":
+        voxels = voxels.astype("f4")
+    np.save("field.npy", voxels)
+    said = line("field.npy")
+    oracle.checked += 1
+    if wanted not in said:
+        oracle.fail(name, f"{said!r}, not {wanted!r}")
+# At least the upper half of the voxels can be seen.
+np.save("field.npy", wave.astype("f4"))
+start = float(line("field.npy").partition("opacity 0 at ")[2].split(",")[0])
+oracle.checked += 1
+if not np.percentile(wave, 15) < start <= np.median(wave) * 1.001:
+    oracle.fail("a field", f"is shown from {start} on, not {np.median(wave)}")
+# The camera is where angles put it.
+oracle.tool("render", "field.npy", "-y", "-q", "-s", "64", "-o", "turned.png",
+            "--view", "front", "--azimuth", "30", "--elevation", "25")
+oracle.checked += 1
+if oracle.tool("compare", "said.png", "turned.png", "--tolerance",
+               "1/255").returncode:
+    oracle.fail("oblique", "is not 30 degrees to the right of the front and 25 up")
+
+# --- CT: its floor, and air -----------------------------------------------------
+
+body = np.where(far < 18, 40 + 900 * (far < 6), -1000).astype("i2")
+body[(far < 14) & (far > 9)] = -850
+body[:, :3] = -3024
+for name, voxels, options, verb, wanted in (
+        ("padding", body, ("-m", "mip"), "render", "-1024..940"),
+        ("padding in a slice", body, (), "slice", "-1024..940"),
+        ("air", body, ("-m", "minip"), "render", "-1000..-500"),
+        ("a range", body, ("-m", "minip", "--range", "-900,0"), "render", "-900..0"),
+        ("MR", body + np.int16(3024), ("-m", "minip"), "render", "0..3964")):
+    nibabel.save(nibabel.Nifti1Image(voxels, np.eye(4)), "ct.nii")
+    said = line("ct.nii", *options, verb=verb)
+    oracle.checked += 1
+    if wanted not in said:
+        oracle.fail(name, f"{said!r}, not {wanted!r}")
 oracle.finish()

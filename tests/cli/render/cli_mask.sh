@@ -54,12 +54,12 @@ pairs npy $view <<END
 $(for way in "" "--method footprint" "--method original" "--mode mip" \
     "--mode iso --iso 90" "--quality high --encoding rle" \
     "--gradient-opacity 0:0,20:1"; do
-    echo "labels 2 and 3 | v.npy --mask m.npy --labels 2-3 $way | = | two.npy --mask all.npy $way"
+    echo "labels 2 and 3 | v.npy --mask m.npy --labels 2-3 $way | = | two.npy --view +z --mask all.npy $way"
 done)
 the whole volume | v.npy --mask m.npy --labels 2-3 | != | v.npy
 NaN in the mask | v.npy --mask m.npy | = | v.npy --mask nan.npy
-all but 0 by hand | v.npy --mask m.npy --stats c.json -y | = | any.npy --mask all.npy --stats d.json -y
-a box of both, but for its place | v.npy --shade none --mask m.npy $box | = | box.npy --shade none
+all but 0 by hand | v.npy --mask m.npy --stats c.json -y | = | any.npy --view +z --mask all.npy --stats d.json -y
+a box of both, but for its place | v.npy --shade none --mask m.npy $box | = | box.npy --view +z --shade none
 a box of flat voxels, with a mask of cubes | v-half.nrrd --mask m-half.nrrd $box | = | \
     v-half.nrrd --mask m.npy $box
 a mask without a place | place.nrrd --mask place.nrrd | = | place.nrrd --mask m.npy
@@ -87,7 +87,7 @@ run 0 "a mask and planes" render v.npy --method footprint -o n.npy --mask m.npy 
     --clip 2,0,0,30,0,0,-1,-4,1,0,0,99,1,0,0,99,1,0,0,99,1,1,1,999 \
     --save-config n.json
 run 0 "masked and clipped by hand" \
-    render clip.npy --method footprint -o o.npy
+    render clip.npy --view +z --method footprint -o o.npy
 same_file "is the same picture" n.npy o.npy
 run 0 "taken from a recipe" render --config n.json -o q.npy
 same_file "they are the same" n.npy q.npy
@@ -115,7 +115,7 @@ done
 both() { # both VERB INPUTS BY_HAND OPTION...: frames of what a mask leaves
     run 0 "a $1" "$TOOL" $1 $2 -q --no-labels -s 60x50 "${@:4}" -y -o 't_%d.png' \
         --mask m.npy --labels 2-3
-    run 0 "of what is masked by hand" "$TOOL" $1 $3 -q --no-labels -s 60x50 "${@:4}" -y \
+    run 0 "of what is masked by hand" "$TOOL" $1 $3 -q --no-labels --view +z -s 60x50 "${@:4}" -y \
         -o 'u_%d.png' --mask all.npy
     same_file "is the same" t_1.png u_1.png
 }

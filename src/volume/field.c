@@ -1,0 +1,14 @@
+/* volume/field.c - see field.h. */
+#include "volume/field.h"
+
+#include <string.h>
+
+bool snow_volume_may_be_field(const snow_volume_info *info) {
+    static const char *const images[] = {"mrc", "tiff", "zarr"};
+    bool found =
+        !info->whole && !info->eight_bits && !info->medical && !*info->modality;
+    for (size_t n = 0; n < sizeof images / sizeof *images; n++)
+        found =
+            found && (*info->quantity || strcmp(info->format, images[n]) != 0);
+    return found;
+}
