@@ -68,8 +68,7 @@ typedef struct snow_look {
     double low, high;             /* of VALUES and PERCENTILES; low < high */
     bool log;                     /* by logarithms; 0, below: transparent */
     snow_domain domain;           /* what the points' values mean */
-    bool per_mm;                  /* opacities of a millimetre, not a voxel: the
-                                     caller sets snow_settings.opacity_length */
+    bool per_mm; /* opacities of a mm: set snow_settings.opacity_length */
     const snow_color_point *colors;
     size_t color_count;
     const snow_opacity_point *opacities;
@@ -77,8 +76,7 @@ typedef struct snow_look {
     const snow_opacity_point *gradient_opacities;
     size_t gradient_opacity_count;
     double symlog; /* linear up to it, logarithms beyond; -1: chosen */
-    bool overlay;  /* of a second volume in the picture of a first; what it does
-                      not say is chosen for that (docs/looks.md) */
+    bool overlay;  /* of a second volume in a first's picture (docs/looks.md) */
 } snow_look;
 SNOW_RECORD(snow_look);
 /* For `look` (or NULL) on `volume`, the same on every machine. A preset in data
@@ -99,8 +97,7 @@ SNOW_API snow_status snow_transfer_get_look(
     const snow_transfer *transfer, snow_look *out);
 
 /* Label `index` (from 0), rising, of what is drawn as labels; else NULL. */
-SNOW_API const snow_label *snow_transfer_label(
-    const snow_transfer *transfer, size_t index);
+SNOW_API const snow_label *snow_transfer_label(const snow_transfer *, size_t);
 
 /* Whether all colours are grey, and pictures have two channels; whether it was
  * chosen for a volume without surfaces, better drawn unshaded. */

@@ -65,8 +65,7 @@ typedef struct snow_volume_info {
     bool whole;       /* whole numbers, masked */
     int64_t channels; /* of voxels with several values; else 0 or 1 */
     snow_channel channel[SNOW_CHANNELS_MAX]; /* the first of them */
-    bool negative; /* high values are dark, says the file */
-    bool estimate; /* values are statistics or estimates, says the file */
+    bool negative, estimate; /* says the file: high is dark; statistics */
 } snow_volume_info;
 SNOW_RECORD(snow_volume_info);
 typedef enum snow_endian {   /* byte order of raw data */

@@ -114,7 +114,7 @@ VEIL = ("--opacity", "0:0,9:0,10:0.0001,99:0.0001,100:1")
 for way in (("--view", "+x"), ("--view", "-y", "--perspective", "5")):
     scattered(0, 0)
     alone = block_edges(*way)
-    for specks, veil in ((40, 0), (0, 10), (30, 10)):
+    for specks, veil in ((12, 0), (0, 10), (12, 10)):
         scattered(specks, veil)
         free = block_edges(*way)
         oracle.checked += 1
