@@ -10,7 +10,7 @@
  * An overlay is more often labels than a volume alone, and these may be lesions
  * of a few voxels: so are all overlays of five values, and of more, unless
  * they are counts, whose neighbours differ by 1, or noise, whose neighbours
- * differ.  A volume alone of two values is a mask. */
+ * differ.  A volume alone of 0 and one value is a mask. */
 #include "transfer/walk.h"
 
 #include <math.h>
@@ -261,7 +261,8 @@ static bool is_mask(const snow_histogram *histogram, const snow_look *look,
                     const label_scan *s) {
     if (s->many || s->count > FEW || !(histogram->min >= 0))
         return false;
-    return s->count <= (look->overlay ? OVERLAID : MASK) ||
+    return (look->overlay ? s->count <= OVERLAID
+                          : s->count <= MASK && s->values[0] == 0) ||
            (look->overlay && s->unlike <= s->alike &&
             (!s->unlike || 2 * s->counted < s->unlike));
 }
@@ -379,7 +380,7 @@ static const char *reason_of(const label_scan *s, const snow_look *look,
     if (look->overlay)
         return "few whole numbers; --overlay-look hot shows values";
     return is_few(s) ? "few whole numbers, in regions"
-                     : "two whole numbers; --preset linear shows values";
+                     : "0 and one value; --preset linear shows values";
 }
 
 static snow_status build(snow_context *context, const label_scan *s,
