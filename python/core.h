@@ -162,6 +162,8 @@ PyObject *volume_render(PyObject *self, PyObject *args);
 PyObject *volume_views(PyObject *self, PyObject *nothing);
 PyObject *volume_slice_axis(PyObject *self, PyObject *name);
 PyObject *volume_slice(PyObject *self, PyObject *args);
+PyObject *volume_slices(PyObject *self, PyObject *args);
+PyObject *volume_slice_shown(PyObject *self, PyObject *args);
 
 /* --- the module ----------------------------------------------------------- */
 

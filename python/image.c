@@ -66,6 +66,7 @@ typedef struct annotations {
     int letters, legend, scale_bar;
     const char *unit, *title;
     double range[2]; /* of colours without opacity; not a number: none */
+    PyObject *texts; /* (x, y, share of x, of y, height, text), ...; or NULL */
     PyObject *bars; /* (transfer, name, low, high), ...: of channels, the lowest
                        first; or NULL */
 } annotations;
@@ -118,6 +119,20 @@ bool image_leave_strip(const transfer_object *t, PyObject *marks,
     return !status;
 }
 
+static snow_status add_texts(PyObject *texts, snow_overlay *overlay) {
+    snow_status status = SNOW_STATUS_OK;
+    for (Py_ssize_t n = 0; texts && n < PyTuple_Size(texts) && !status; n++) {
+        double x, y, share_x, share_y, height;
+        const char *text;
+        if (!PyArg_ParseTuple(PyTuple_GetItem(texts, n), "ddddds", &x, &y,
+                              &share_x, &share_y, &height, &text))
+            return SNOW_STATUS_BAD_USAGE;
+        status =
+            snow_overlay_text(overlay, x, y, share_x, share_y, height, text);
+    }
+    return status;
+}
+
 /* In the order of the command line: what comes first takes its place. */
 static snow_status annotate(const image_object *o, const annotations *a,
                             snow_overlay *overlay) {
@@ -131,6 +146,8 @@ static snow_status annotate(const image_object *o, const annotations *a,
         status = snow_overlay_orientation(overlay, &o->info, &o->view);
     if (a->title && !status)
         status = snow_overlay_title(overlay, a->title);
+    if (!status)
+        status = add_texts(a->texts, overlay);
     return status;
 }
 
@@ -140,7 +157,7 @@ static PyObject *image_save(PyObject *self, PyObject *args,
     static char *names[] = {"path",    "background", "bits",  "overwrite",
                             "letters", "legend",     "unit",  "scale_bar",
                             "title",   "depth",      "range", "bars",
-                            NULL};
+                            "texts",   NULL};
     image_object *o = (image_object *)self;
     snow_image_options options;
     PyObject *file, *background = Py_None, *depth = Py_None, *rgb = NULL;
@@ -149,10 +166,10 @@ static PyObject *image_save(PyObject *self, PyObject *args,
     annotations a = {.range = {NAN, NAN}};
     snow_image_options_init(&options);
     if (!PyArg_ParseTupleAndKeywords(
-            args, keywords, "O|$OipppzpzO(dd)O!", names, &file, &background,
+            args, keywords, "O|$OipppzpzO(dd)O!O!", names, &file, &background,
             &options.bits, &overwrite, &a.letters, &a.legend, &a.unit,
             &a.scale_bar, &a.title, &depth, &a.range[0], &a.range[1],
-            &PyTuple_Type, &a.bars))
+            &PyTuple_Type, &a.bars, &PyTuple_Type, &a.texts))
         return NULL;
     if (file != Py_None && PyBytes_AsStringAndSize(file, &path, NULL))
         return NULL;
@@ -176,7 +193,7 @@ static PyObject *image_save(PyObject *self, PyObject *args,
     }
     snow_overlay *overlay = NULL;
     snow_status status = SNOW_STATUS_OK;
-    if (a.letters || a.legend || a.scale_bar || a.title)
+    if (a.letters || a.legend || a.scale_bar || a.title || a.texts)
         status = snow_overlay_new(o->context->context, (int)o->shape[1],
                                   (int)o->shape[0], &overlay);
     if (overlay)

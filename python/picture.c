@@ -4,6 +4,7 @@
 #include "picture/light.h"
 
 #include <math.h>
+#include <snowglass/overlay.h>
 #include <string.h>
 
 static bool make_view(volume_object *o, const char *name, PyObject *given,
@@ -315,6 +316,146 @@ static bool see_slice(request *r, const char *axis, PyObject *marks,
     }
     r->view = view;
     return !*status;
+}
+
+/* slice_shown(transfer, axis) -> the first and the last slice that shows */
+PyObject *volume_slice_shown(PyObject *self, PyObject *args) {
+    volume_object *o = (volume_object *)self;
+    PyObject *transfer;
+    int axis;
+    int64_t ends[2] = {0, 0};
+    if (!PyArg_ParseTuple(args, "O!i", transfer_type, &transfer, &axis) ||
+        !volume_use(o, Py_None))
+        return NULL;
+    snow_status status = SNOW_STATUS_OK;
+    CALL(o->context, status,
+         snow_slice_shown(o->volume, ((transfer_object *)transfer)->transfer,
+                          axis, ends));
+    return context_leave(o->context, status)
+               ? Py_BuildValue("(LL)", (long long)ends[0], (long long)ends[1])
+               : NULL;
+}
+
+/* What is asked of several slices in one picture. */
+typedef struct sheet {
+    const char *axis; /* of a grid; NULL: three through a point */
+    int columns, rows, size[2];
+    double at[3];
+    const double *indices;
+    int count;
+    snow_image *image;
+    PyObject *places;
+} sheet;
+
+/* Where part `n` lies. */
+static snow_status place_part(const request *r, sheet *s, int n,
+                              snow_slice_place *out) {
+    snow_context *context = r->volume->context->context;
+    const snow_volume_info *info = snow_volume_get_info(r->volume->volume);
+    int size[2] = {s->size[0], s->size[1]};
+    snow_slice_place_init(out);
+    snow_status status =
+        s->axis ? snow_slice_grid(context, info, s->axis, s->columns, s->rows,
+                                  n, size, out)
+                : snow_slice_ortho(context, info, s->at, n, size, out);
+    if (s->axis && !status)
+        out->index = (int64_t)s->indices[n];
+    if (!s->image && !status)
+        status = snow_image_new(context, size[0], size[1], 4, &s->image);
+    return status;
+}
+
+static snow_status draw_sheet(request *r, sheet *s) {
+    snow_status status = SNOW_STATUS_OK;
+    for (int n = 0; n < s->count && !status; n++) {
+        snow_slice_place place;
+        status = place_part(r, s, n, &place);
+        r->view = place.view;
+        if (!status)
+            status = draw_apart(r, r->mixed, place.index);
+        if (!status)
+            status = snow_slice_lay(r->image, &place, !s->axis, s->image);
+        snow_image_free(r->image);
+        r->image = NULL;
+    }
+    return status;
+}
+
+/* (number, x, y, width, height, the letters of its edges) of each. */
+static bool tell_places(const request *r, sheet *s) {
+    snow_context *context = r->volume->context->context;
+    const snow_volume_info *info = snow_volume_get_info(r->volume->volume);
+    s->places = PyList_New(0);
+    for (int n = 0; n < s->count && s->places; n++) {
+        snow_slice_place p;
+        char edges[4][4] = {"", "", "", ""};
+        if (place_part(r, s, n, &p) ||
+            snow_view_orientation(context, info, &p.view, edges))
+            break;
+        PyObject *told = Py_BuildValue("(Liiii(ssss))", (long long)p.index, p.x,
+                                       p.y, p.view.width, p.view.height,
+                                       edges[0], edges[1], edges[2], edges[3]);
+        if (!told || PyList_Append(s->places, told))
+            Py_CLEAR(s->places);
+        Py_XDECREF(told);
+    }
+    return s->places != NULL;
+}
+
+/* The view of the whole picture, for the scale. */
+static void widen_view(const sheet *s, snow_view *view) {
+    const int width = snow_image_width(s->image);
+    const int height = snow_image_height(s->image);
+    view->zoom *= fmin(view->width, view->height) / fmin(width, height);
+    view->width = width;
+    view->height = height;
+}
+
+/* slices(Image, transfer, axis or None, columns, rows, (x, y, z), indices,
+ * width, height, settings, layers, whether they are mixed, share) -> (image,
+ * places) */
+PyObject *volume_slices(PyObject *self, PyObject *args) {
+    volume_object *o = (volume_object *)self;
+    PyObject *type, *transfer, *settings, *layers, *indices, *out = NULL;
+    double list[10000];
+    int mixed;
+    request r = {.volume = o};
+    sheet s = {.axis = NULL};
+    snow_status status = SNOW_STATUS_OK;
+    snow_settings_init(&r.settings);
+    snow_view_init(&r.view);
+    if (!PyArg_ParseTuple(args, "OO!zii(ddd)OiiOO!pd", &type, transfer_type,
+                          &transfer, &s.axis, &s.columns, &s.rows, &s.at[0],
+                          &s.at[1], &s.at[2], &indices, &s.size[0], &s.size[1],
+                          &settings, &PyTuple_Type, &layers, &mixed,
+                          &r.shares[0]) ||
+        !record_fill_settings(settings, &r.settings))
+        return NULL;
+    const Py_ssize_t count = PySequence_Size(indices);
+    if (count < 0 || count > 10000 ||
+        !record_numbers("indices", indices, count, false, list))
+        return NULL;
+    s.indices = list;
+    s.count = (int)count;
+    r.transfer = (transfer_object *)transfer;
+    r.mixed = mixed;
+    if (!volume_use(o, Py_None))
+        return NULL;
+    snow_volume_info info = *snow_volume_get_info(o->volume);
+    if (read_layers(layers, &r))
+        CALL(o->context, status, draw_sheet(&r, &s));
+    if (!status && !PyErr_Occurred() && tell_places(&r, &s))
+        widen_view(&s, &r.view);
+    const bool fine = context_leave(o->context, status);
+    r.image = s.image;
+    PyObject *image = finish_image(type, &r, &info);
+    if (image)
+        ((image_object *)image)->opaque = true;
+    if (fine && image && s.places)
+        out = Py_BuildValue("(OO)", image, s.places);
+    Py_XDECREF(image);
+    Py_XDECREF(s.places);
+    return out;
 }
 
 /* slice(Image, axis, index, transfer or None for values, width, height,

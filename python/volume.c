@@ -496,6 +496,8 @@ static PyMethodDef volume_methods[] = {
     METHOD("_views", volume_views, METH_NOARGS, "back and up of each view"),
     METHOD("_slice_axis", volume_slice_axis, METH_O, "of the grid and world"),
     METHOD("_slice", volume_slice, METH_VARARGS, "a picture of a slice"),
+    METHOD("_slices", volume_slices, METH_VARARGS, "of several"),
+    METHOD("_slice_shown", volume_slice_shown, METH_VARARGS, "those to see"),
     {NULL, NULL, 0, NULL}};
 static PyGetSetDef volume_values[] = {
     {"_info", volume_info, NULL, "snow_volume_info", NULL},

@@ -185,6 +185,11 @@ SNOW_API snow_status snow_slice_grid(snow_context *context,
     const snow_volume_info *info, const char *axis, int columns, int rows,
     int part, int size[2], snow_slice_place *out);
 
+/* Lays a slice over its place in the picture, of four channels or as many as
+ * the slice has; with lines through the point (four). */
+SNOW_API snow_status snow_slice_lay(const snow_image *slice,
+    const snow_slice_place *place, bool cross, snow_image *sheet);
+
 /* The first and the last slice of which a look shows 1 % of the voxels: above
  * a tenth of its range, or of visible labels. All, where none is. */
 SNOW_API snow_status snow_slice_shown(const snow_volume *volume,

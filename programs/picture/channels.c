@@ -100,14 +100,26 @@ typedef struct channel_colors {
     snow_opacity_point opacities[4];
 } channel_colors;
 
+/* One slice, or up to five of 16 times as many rows and columns: a picture, as
+ * the automatic look has it. */
+static bool is_picture(const snow_volume_info *info) {
+    const int64_t *n = info->dims;
+    for (int i = 0; i < 3; i++)
+        if (n[i] <= 5 && n[(i + 1) % 3] >= (n[i] > 1 ? 16 * n[i] : 2) &&
+            n[(i + 2) % 3] >= (n[i] > 1 ? 16 * n[i] : 2))
+            return true;
+    return false;
+}
+
 /* Colours and, where no histogram is asked, opacities: those of a projection,
  * and of voxels that are colours: faint enough that the colour is not that of
- * the border, where values are between. */
-static void take_color(const options *opts, const snow_channel *of,
-                       const channel_pick *pick, channel_colors *scratch,
-                       snow_look *look) {
-    static const snow_opacity_point own[] = {
-        {0, 0}, {0.04, 0}, {0.15, 0.25}, {1, 0.3}};
+ * the border, where values are between; but a picture is what it is. */
+static void take_color(const options *opts, const snow_volume_info *info,
+                       const snow_channel *of, const channel_pick *pick,
+                       channel_colors *scratch, snow_look *look) {
+    static const snow_opacity_point own[2][4] = {
+        {{0, 0}, {0.04, 0}, {0.15, 0.25}, {1, 0.3}},
+        {{0, 1}, {0.04, 1}, {0.15, 1}, {1, 1}}};
     const bool flat = mode_is_projection(opts->mode);
     const double dim = flat || of->own ? 0 : DIM;
     double rgb[3];
@@ -125,7 +137,7 @@ static void take_color(const options *opts, const snow_channel *of,
         look->preset = flat ? "linear" : NULL;
         return;
     }
-    memcpy(scratch->opacities, own, sizeof own);
+    memcpy(scratch->opacities, own[is_picture(info)], sizeof own[0]);
     if (flat)
         scratch->opacities[1] = (snow_opacity_point){1, 1};
     if (flat || of->own)
@@ -189,7 +201,7 @@ snow_status channels_look(snow_comm *comm, const options *opts,
                       .high = range.high,
                       .log = opts->scale.log,
                       .symlog = opts->scale.symlog};
-    take_color(opts, of, pick, &scratch, &look);
+    take_color(opts, info, of, pick, &scratch, &look);
     if (opts->gradient_opacities.count) {
         look.gradient_opacities = opts->gradient_opacities.points;
         look.gradient_opacity_count = opts->gradient_opacities.count;

@@ -11,10 +11,6 @@
 
 #include <snowglass/overlay.h>
 
-/* Lines through a point, which leave it free: of a picture's shorter side. */
-#define CROSS_GAP 0.03
-static const float cross_color[4] = {0.25F, 0.9F, 0.35F, 1};
-
 /* --- one slice ------------------------------------------------------------ */
 
 /* A slice that was read alone is number 0 of its volume, in whose size the zoom
@@ -63,53 +59,6 @@ snow_status slice_draw_part(slice_work *w, int64_t part, snow_image **out) {
 
 /* --- several -------------------------------------------------------------- */
 
-/* Copies a slice to its place; grey ones become colours. */
-static void paste(snow_image *from, const snow_slice_place *place,
-                  snow_image *onto) {
-    const int parts = snow_image_channels(from);
-    const int to = snow_image_channels(onto), width = snow_image_width(onto);
-    const float *pixel = snow_image_pixels(from);
-    for (int y = 0; y < snow_image_height(from); y++) {
-        float *out =
-            snow_image_pixels(onto) +
-            ((size_t)(place->y + y) * (size_t)width + (size_t)place->x) *
-                (size_t)to;
-        for (int x = 0; x < snow_image_width(from); x++, pixel += parts)
-            for (int c = 0; c < to; c++)
-                *out++ = pixel[parts == to ? c : c == 3 ? parts - 1 : 0];
-    }
-}
-
-/* Fills the pixels of a slice from (x0, y0) to (x1, y1), as far as they are
- * within. */
-static void fill(snow_image *onto, const snow_slice_place *place, double x0,
-                 double y0, double x1, double y1) {
-    const int width = snow_image_width(onto);
-    const int left = (int)fmax(rint(x0), 0), top = (int)fmax(rint(y0), 0);
-    const int right = (int)fmin(rint(x1), place->view.width);
-    const int bottom = (int)fmin(rint(y1), place->view.height);
-    for (int y = top; y < bottom; y++)
-        for (int x = left; x < right; x++)
-            memcpy(snow_image_pixels(onto) +
-                       ((size_t)(place->y + y) * (size_t)width +
-                        (size_t)(place->x + x)) *
-                           4,
-                   cross_color, sizeof cross_color);
-}
-
-static void draw_cross(const slice_work *w, const snow_slice_place *place,
-                       snow_image *onto) {
-    const double side = fmin(w->size[0], w->size[1]);
-    const double wide = fmax(rint(side / 600), 1);
-    const double gap = fmax(CROSS_GAP * side, 3);
-    const double x = floor(place->cross[0] - (wide - 1) / 2);
-    const double y = floor(place->cross[1] - (wide - 1) / 2);
-    fill(onto, place, x, 0, x + wide, y - gap);
-    fill(onto, place, x, y + wide + gap, x + wide, place->view.height);
-    fill(onto, place, 0, y, x - gap, y + wide);
-    fill(onto, place, x + wide + gap, y, place->view.width, y + wide);
-}
-
 /* Where there are no slices the picture is clear, or has no values. */
 static snow_status new_sheet(slice_work *w) {
     const int parts = w->transfer ? 4 : 1;
@@ -131,9 +80,9 @@ snow_status slice_draw(slice_work *w) {
         status = slice_draw_part(w, n, &image);
         if (status != SNOW_STATUS_OK)
             break;
-        paste(image, &w->places[n], w->image);
-        if (w->kind == SLICE_ORTHO && w->transfer)
-            draw_cross(w, &w->places[n], w->image);
+        status =
+            snow_slice_lay(image, &w->places[n],
+                           w->kind == SLICE_ORTHO && w->transfer, w->image);
         snow_image_free(image);
     }
     w->frame = seconds_now() - begin;

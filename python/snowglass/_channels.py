@@ -25,10 +25,18 @@ NAMED = ("", "blue", "green", "cyan", "red", "magenta", "yellow", "grey")
 DIM = 0.5
 #: Opacities of voxels that are colours, over the range.
 OWN = ((0.0, 0.0), (0.04, 0.0), (0.15, 0.25), (1.0, 0.3))
+#: The same of a picture: of one slice, or a few large ones.
+SOLID = ((0.0, 1.0), (0.04, 1.0), (0.15, 1.0), (1.0, 1.0))
 NONE_SAID: Mapping[str, Any] = {"name": "", "color": None, "window": None,
                                 "shown": False, "own": False}
 
 Said = Sequence[Mapping[str, Any]]  #: info["channels"]
+
+
+def _is_picture(dims: Sequence[int]) -> bool:
+    """One slice, or up to five of 16 times as many rows and columns."""
+    least, *others = sorted(dims)
+    return least <= 5 and others[0] >= (16 * least if least > 1 else 2)
 
 
 class Pick(NamedTuple):
@@ -337,7 +345,8 @@ class Channels:
             colors = [(0, *(dim * part for part in rgb)), (1, *rgb)]
             fields["domain"] = "range"
             opacities = ((0, 0), (1, 1)) if flat else \
-                OWN if said["own"] else None
+                (SOLID if _is_picture(volume._info["dims"]) else OWN) \
+                if said["own"] else None
         made = volume._look(fields, kind, colors, opacities,
                             look.gradient_opacity)
         if kind in ("auto", "robust", "slices") and made.domain[0] == 0 and \

@@ -57,6 +57,14 @@ class Volume:
     def _views(self) -> dict[str, tuple[tuple[float, float, float],
                                         tuple[float, float, float]]]: ...
     def _slice_axis(self, axis: str) -> tuple[int, int]: ...
+    def _slice_shown(self, transfer: Transfer, axis: int) -> tuple[int, int]: ...
+    def _slices(self, type: Type[I], transfer: Transfer, axis: Optional[str],
+                columns: int, rows: int, at: tuple[float, float, float],
+                indices: Sequence[int], width: int, height: int,
+                settings: Mapping[str, Any],
+                layers: tuple[tuple["Volume", Transfer, bool, float], ...],
+                mixed: bool, share: float) -> tuple[I, Sequence[tuple[
+                    int, int, int, int, int, tuple[str, str, str, str]]]]: ...
     def _slice(self, type: Type[I], axis: str, index: int,
                transfer: Optional[Transfer], width: int, height: int,
                settings: Mapping[str, Any],

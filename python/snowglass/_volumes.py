@@ -571,6 +571,79 @@ class Volume(_snowglass.Volume):
         alone._annotate(image, "slice", transfer, look, annotations)
         return image
 
+    def slice_grid(self, columns: int, rows: int, axis: Union[str, int] = "axial",
+                   at: Optional[Sequence[int]] = None,
+                   look: Union[Look, str, None] = None, *,
+                   size: Union[int, Sequence[int], None] = None,
+                   kernel: Optional[str] = None, letters: bool = True,
+                   threads: int = 0) -> Image:
+        """A picture of columns times rows slices, with their numbers and one look,
+        that of the whole volume; spread evenly over those that show something,
+        or over the numbers `at`.  The rest is as in Volume.slice.  `stats` has
+        axis and indices."""
+        axis = self._axis_name(axis)
+        along = self._find_slice(axis, None)[0]
+        count = _whole("columns", columns, "a number from 1") * \
+            _whole("rows", rows, "a number from 1")
+        transfer, mixture = self._sheet_look(look)
+        if at is None:
+            first, last = self._slice_shown(transfer, along)
+            at = range(first, last + 1)
+        shown = [self._find_slice(axis, n)[1] for n in at]
+        indices = [shown[int((n + 0.5) * len(shown) / min(count, len(shown)))]
+                   for n in range(min(count, len(shown)))]
+        image = self._draw_sheet("xyz"[along], columns, rows, (0.0,) * 3, indices,
+                                 transfer, mixture, look, size, letters,
+                                 {"kernel": kernel, "threads": threads})
+        image.stats = {"axis": axis, "indices": indices}
+        return image
+
+    def slice_ortho(self, at: Optional[Sequence[float]] = None,
+                    look: Union[Look, str, None] = None, *,
+                    size: Union[int, Sequence[int], None] = None,
+                    kernel: Optional[str] = None, letters: bool = True,
+                    threads: int = 0) -> Image:
+        """The axial, coronal and sagittal slice through a point of the world, or
+        the middle, beside one another at one scale, with lines through the
+        point; else as slice_grid.  `stats` has point and indices."""
+        import numpy
+        matrix = numpy.array(self._info["matrix"])[:3]
+        middle = matrix[:, :3] @ (numpy.array(self._info["dims"]) // 2) + matrix[:, 3]
+        x, y, z = map(float, middle if at is None else at)
+        transfer, mixture = self._sheet_look(look)
+        image = self._draw_sheet(None, 0, 0, (x, y, z), [0] * 3, transfer, mixture,
+                                 look, size, letters,
+                                 {"kernel": kernel, "threads": threads})
+        image.stats = {"point": (x, y, z), "indices": image.stats["indices"]}
+        return image
+
+    def _sheet_look(self, look: Union[Look, str, None]
+                    ) -> tuple[Any, Optional[_channels.Mixture]]:
+        """The look of all slices, in the colours of one."""
+        if self._mixed is not None and not isinstance(look, _snowglass.Transfer):
+            mixture = self._mixed.mixture(self, look_of(look), "slice", {},
+                                          lambda each: each)
+            if mixture:
+                return mixture.transfers[0], mixture
+        return self._slice_transfer(look), None
+
+    def _draw_sheet(self, axis: Optional[str], columns: int, rows: int,
+                    at: tuple[float, ...], indices: Sequence[int], transfer: Any,
+                    mixture: Optional[_channels.Mixture], look: Any,
+                    size: Union[int, Sequence[int], None], letters: bool,
+                    settings: Mapping[str, Any]) -> Image:
+        width, height = _sides(0 if size is None else size)
+        image, places = self._slices(
+            Image, transfer, axis, columns, rows, (at[0], at[1], at[2]), indices,
+            width, height, settings, mixture.layers() if mixture else (),
+            mixture is not None, mixture.shares[0] if mixture else 1.0)
+        annotations: dict[str, Any] = {"letters": False, "legend": False}
+        if letters:
+            annotations["texts"] = _sheet_texts(places, axis is not None)
+        self._annotate(image, "slice", transfer, look, annotations, mixture)
+        image.stats = {"indices": [place[0] for place in places]}
+        return image
+
     def slice_values(self, axis: Union[str, int] = "axial",
                      at: Union[int, str, None] = None, *,
                      size: Union[int, Sequence[int], None] = None,
@@ -691,6 +764,26 @@ class Volume(_snowglass.Volume):
 MATERIAL = ("ambient", "diffuse", "specular", "shininess")
 VIEW = "a name of snowglass.views(), such as 'anterior', or a camera by position, " \
        "target and up"
+
+
+def _sheet_texts(places: Sequence[Any], numbered: bool
+                 ) -> tuple[tuple[float, float, float, float, float, str], ...]:
+    """Numbers of slices, and the letters of their edges, where the command line
+    draws them."""
+    texts = []
+    for n, (index, x, y, width, height, edges) in enumerate(places):
+        side = min(width, height)
+        tall = float(max(9, round(0.06 * side)))
+        margin = max(0.6 * tall, 4)
+        for letter, across, down in zip(edges, (0, 1, .5, .5), (.5, .5, 0, 1)):
+            if letter and (n == 0 or not numbered):
+                texts.append((x + margin + across * (width - 2 * margin),
+                              y + margin + down * (height - 2 * margin),
+                              across, down, tall, letter))
+        tall = float(max(9, round(0.05 * side)))
+        if numbered:
+            texts.append((x + 0.6 * tall, y + 0.6 * tall, 0, 0, tall, str(index)))
+    return tuple(texts)
 
 
 def _whole(name: str, value: Any, give: str) -> int:

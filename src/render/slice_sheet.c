@@ -13,6 +13,7 @@
 #include <snowglass/snowglass.h>
 
 #include <math.h>
+#include <string.h>
 
 /* Pixels between slices. */
 #define GAP 2
@@ -214,5 +215,67 @@ snow_status snow_slice_shown(const snow_volume *volume,
         last--;
     ends[0] = first < count ? first : 0;
     ends[1] = first < count ? last : count - 1;
+    return SNOW_STATUS_OK;
+}
+
+/* --- the picture of all --------------------------------------------------- */
+
+/* Lines through a point, which leave it free: of a picture's shorter side. */
+#define CROSS_GAP 0.03
+static const float cross_color[4] = {0.25F, 0.9F, 0.35F, 1};
+
+static float *pixel_at(const snow_image *image, int x, int y) {
+    return image->pixels + ((size_t)y * (size_t)image->width + (size_t)x) *
+                               (size_t)image->channels;
+}
+
+/* Fills the pixels of a slice from (x0, y0) to (x1, y1), as far as they are
+ * within. */
+static void fill(const snow_slice_place *place, double x0, double y0, double x1,
+                 double y1, snow_image *sheet) {
+    const int left = (int)fmax(rint(x0), 0), top = (int)fmax(rint(y0), 0);
+    const int right = (int)fmin(rint(x1), place->view.width);
+    const int bottom = (int)fmin(rint(y1), place->view.height);
+    for (int y = top; y < bottom; y++)
+        for (int x = left; x < right; x++)
+            memcpy(pixel_at(sheet, place->x + x, place->y + y), cross_color,
+                   sizeof cross_color);
+}
+
+static void draw_cross(const snow_slice_place *place, snow_image *sheet) {
+    const double side = fmin(sheet->width, sheet->height);
+    const double wide = fmax(rint(side / 600), 1);
+    const double gap = fmax(CROSS_GAP * side, 3);
+    const double x = floor(place->cross[0] - (wide - 1) / 2);
+    const double y = floor(place->cross[1] - (wide - 1) / 2);
+    fill(place, x, 0, x + wide, y - gap, sheet);
+    fill(place, x, y + wide + gap, x + wide, place->view.height, sheet);
+    fill(place, 0, y, x - gap, y + wide, sheet);
+    fill(place, x + wide + gap, y, place->view.width, y + wide, sheet);
+}
+
+snow_status snow_slice_lay(const snow_image *slice,
+                           const snow_slice_place *place, bool cross,
+                           snow_image *sheet) {
+    const int parts = slice->channels, to = sheet->channels;
+    snow_slice_place at;
+    SNOW_TRY(SNOW_RECORD_READ(sheet->context, snow_slice_place, place, &at));
+    if (at.x < 0 || at.y < 0 || at.x + slice->width > sheet->width ||
+        at.y + slice->height > sheet->height || (to != parts && to != 4) ||
+        slice->width != at.view.width || slice->height != at.view.height)
+        return snow_fail(sheet->context, SNOW_STATUS_BAD_USAGE,
+                         "a slice of %d x %d pixels has no place in a picture "
+                         "of %d x %d",
+                         slice->width, slice->height, sheet->width,
+                         sheet->height);
+    for (int y = 0; y < slice->height; y++)
+        for (int x = 0; x < slice->width; x++) {
+            const float *pixel = pixel_at(slice, x, y);
+            float *out = pixel_at(sheet, at.x + x, at.y + y);
+            for (int c = 0; c < to; c++)
+                out[c] = pixel[parts == to ? c : c == 3 ? parts - 1 : 0];
+        }
+    if (cross && to == 4)
+        draw_cross(&at, sheet);
     return SNOW_STATUS_OK;
 }

@@ -431,6 +431,20 @@ for at in ("1,2", "1,2,x", "900,0,0"):
     done = run("a.nii", "--ortho", "--at", at)
     check(f"a point {at} is refused", done.returncode == 2)
 
+# A picture of colours in 3D keeps them.
+try:
+    import tifffile
+    inks = np.zeros((32, 48, 3), np.uint8)
+    inks[:], inks[8:24, 12:36] = (200, 90, 30), (10, 200, 250)
+    for count in (1, 2):
+        tifffile.imwrite("rgb.tif", np.stack([inks] * count), photometric="rgb")
+        oracle.tool("render", "rgb.tif", "-o", "rgb.npy", "-y", "-q", "-s",
+                    "96x64", "--fit", "volume", "--zoom", "0.5")
+        check(f"a picture of colours in 3D, {count} deep", np.abs(
+            np.load("rgb.npy")[32, 48] * 255 - [10, 200, 250, 255]).max() < 2)
+except ImportError as missing:
+    print("skip   a picture of colours in 3D:", missing)
+
 # The figures say which slice it was.
 run("a.nii", "--axis", "coronal", "--at", "3", "--stats", "s.json")
 told = json.loads(oracle.got("s.json"))

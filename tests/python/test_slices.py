@@ -14,6 +14,30 @@ class Slices(InFolder):
         self.array = random.integers(0, 900, (5, 6, 7)).astype(numpy.int16)
         self.volume = sg.Volume(self.array, spacing=(1.5, 1.5, 1.5))
 
+    def test_several_slices_in_one_picture(self):
+        low, high = self.array.min(), self.array.max()
+        grey = (self.array[:, ::-1].astype(float) - low) / (high - low)
+        image = self.volume.slice_grid(2, 1, at=range(1, 5))
+        self.assertEqual(image.stats["indices"], [2, 4])
+        pixels = numpy.asarray(image)
+        self.assertEqual(pixels.shape, (6, 16, 4))
+        numpy.testing.assert_allclose(pixels[:, :7, 0], grey[2], atol=1e-5)
+        numpy.testing.assert_allclose(pixels[:, 9:, 0], grey[4], atol=1e-5)
+        image = self.volume.slice_ortho((1.5 * 2, 1.5 * 4, 1.5 * 3))
+        self.assertEqual(image.stats["indices"], [3, 4, 2])
+        values = numpy.asarray(image)[..., 0]
+        self.assertEqual(values.shape, (6, 7 + 2 + 7 + 2 + 6))
+        free = numpy.asarray(image)[..., 1] == values  # of the lines
+        numpy.testing.assert_allclose((values - grey[3].max())[0, :2],
+                                      (grey[3] - grey[3].max())[0, :2], atol=1e-5)
+        self.assertTrue(free.any() and not free.all())
+        self.volume.save("grid.nrrd")
+        volume = sg.Volume("grid.nrrd")
+        self.same(volume.slice_grid(3, 2, size=(300, 200)),
+                  "slice", "grid.nrrd", "--grid", "3x2", "-s", "300x200")
+        self.same(volume.slice_ortho(size=(300, 200)),
+                  "slice", "grid.nrrd", "--ortho", "-s", "300x200")
+
     def test_values_are_those_of_the_array(self):
         for axis, expected in [
                 ("z", self.array[3, ::-1]), ("axial", self.array[3, ::-1]),
