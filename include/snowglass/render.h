@@ -163,37 +163,32 @@ SNOW_API snow_status snow_slice_render(const snow_volume *volume, int64_t index,
     const snow_transfer *transfer, const snow_view *view,
     const snow_settings *settings, snow_image **image);
 
-/* A slice in a picture of several. */
+/* A slice in a picture of several: straight on it, across an axis of the grid;
+ * its upper left pixel, and from there where the point lies in it. */
 typedef struct snow_slice_place {
     size_t size;
-    snow_view view; /* straight on it, in pixels of its own */
-    int axis;       /* of the grid */
+    snow_view view;
+    int axis, x, y;
     int64_t index;
-    int x, y;        /* its upper left pixel in the picture */
-    double cross[2]; /* where the point lies in it, in pixels from there */
+    double cross[2];
 } snow_slice_place;
 SNOW_RECORD(snow_slice_place);
 
-/* Of those through a point of the world, axial, coronal and sagittal in a row
- * at one scale, number `part` from 0; of a grid of slices across an axis, row
- * by row, whose `index` is the caller's. The picture has a size, or gets its
- * own where a side is 0. Errors: BAD_USAGE (a point outside; no such part). */
-SNOW_API snow_status snow_slice_ortho(snow_context *context,
-    const snow_volume_info *info, const double at[3], int part, int size[2],
+/* Number `part` of those through a point of the world: axial, coronal, sagittal
+ * in a row at one scale; or of a grid across an axis, row by row (`index` 0).
+ * Where a side of the picture is 0 it gets its own. Errors: BAD_USAGE. */
+SNOW_API snow_status snow_slice_ortho(snow_context *, const snow_volume_info *,
+    const double at[3], int part, int size[2], snow_slice_place *out);
+SNOW_API snow_status snow_slice_grid(snow_context *, const snow_volume_info *,
+    const char *axis, int columns, int rows, int part, int size[2],
     snow_slice_place *out);
-SNOW_API snow_status snow_slice_grid(snow_context *context,
-    const snow_volume_info *info, const char *axis, int columns, int rows,
-    int part, int size[2], snow_slice_place *out);
-
-/* Lays a slice over its place in the picture, of four channels or as many as
- * the slice has; with lines through the point (four). */
+/* Lays a slice over its place, with lines through the point; `sheet` has four
+ * channels, or those of the slice. Ends of what a look shows 1 % of: above a
+ * tenth of its range, or labels. */
 SNOW_API snow_status snow_slice_lay(const snow_image *slice,
     const snow_slice_place *place, bool cross, snow_image *sheet);
-
-/* The first and the last slice of which a look shows 1 % of the voxels: above
- * a tenth of its range, or of visible labels. All, where none is. */
-SNOW_API snow_status snow_slice_shown(const snow_volume *volume,
-    const snow_transfer *transfer, int axis, int64_t ends[2]);
+SNOW_API snow_status snow_slice_shown(const snow_volume *,
+    const snow_transfer *, int axis, int64_t ends[2]);
 
 /* Owned by the frame until its next picture. Depths, or NULL: world distance
  * from the target's plane to where opacity passes 1/2, or the surface. */
