@@ -449,8 +449,6 @@ PyObject *volume_slices(PyObject *self, PyObject *args) {
     const bool fine = context_leave(o->context, status);
     r.image = s.image;
     PyObject *image = finish_image(type, &r, &info);
-    if (image)
-        ((image_object *)image)->opaque = true;
     if (fine && image && s.places)
         out = Py_BuildValue("(OO)", image, s.places);
     Py_XDECREF(image);

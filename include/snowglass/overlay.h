@@ -14,7 +14,6 @@ SNOW_API void snow_overlay_free(snow_overlay *overlay);
 
 /* The picture below, which hides edges of the box; it must live as long. */
 SNOW_API void snow_overlay_set_picture(snow_overlay *, const snow_image *);
-
 /* Pixels of a capital letter that suits pictures of its size. */
 SNOW_API double snow_overlay_text_height(const snow_overlay *overlay);
 /* A line of UTF-8 (Latin-1), capitals `height` pixels high. (x, y) is the
@@ -31,13 +30,12 @@ SNOW_API snow_status snow_overlay_orientation(
 
 /* At the right, sides of at least 128 pixels: the colours with ticks, and
  * opacity as a line. `unit` may be NULL. `range`, of pictures without opacity:
- * values of the first and the last colour; else NULL. It is bar `n` of `count`,
- * from 0, the lowest first. */
+ * values of the first and the last colour; else NULL. Bar 0 is the lowest. */
 SNOW_API snow_status snow_overlay_color_bar(snow_overlay *overlay,
     const snow_transfer *transfer, const char *unit, const double range[2],
     int n, int count);
 /* The `strip` of a view whose picture leaves room for the bars so far. */
-SNOW_API double snow_overlay_strip(const snow_overlay *overlay);
+SNOW_API double snow_overlay_strip(const snow_overlay *);
 /* A length, lower right, sides of at least 128 pixels, not in perspective. */
 SNOW_API snow_status snow_overlay_scale_bar(
     snow_overlay *overlay, const snow_volume_info *info, const snow_view *view);

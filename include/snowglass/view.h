@@ -30,8 +30,7 @@ typedef struct snow_view {
     double position[3], target[3];         /* world; camera, what it looks at */
     double upward[3]; /* world; up in the picture. Without it a camera with a
                          position has +z up, or +y if it looks along z */
-    double strip; /* share of the width, 0 to 0.5, at the right, that is left
-                     to a legend: the target is in the middle of the rest */
+    double strip; /* of the width at the right, for a legend: 0 to 0.5 */
 } snow_view;
 SNOW_RECORD(snow_view);
 /* By name, of any case: a side of the world (docs/model.md), where the camera
@@ -42,8 +41,7 @@ SNOW_API snow_status snow_view_from_name(
 /* Anterior of a patient, else +z; of a volume thinner than a quarter of its
  * shorter side, its face. Its name (NULL), and what a name means for a volume:
  * axial, coronal, sagittal, front and back are other sides of a patient. */
-SNOW_API snow_status snow_view_default(
-    const snow_volume *volume, snow_view *out);
+SNOW_API snow_status snow_view_default(const snow_volume *, snow_view *out);
 SNOW_API const char *snow_view_name_for(
     const snow_volume_info *info, const char *name);
 
@@ -51,7 +49,6 @@ SNOW_API const char *snow_view_name_for(
 SNOW_API const char *snow_view_name(size_t index);
 
 /* The zoom at which a step of the smallest spacing is one pixel. */
-SNOW_API double snow_view_zoom_for_voxels(
-    const snow_volume *volume, int width, int height);
+SNOW_API double snow_view_zoom_for_voxels(const snow_volume *, int w, int h);
 
 #endif

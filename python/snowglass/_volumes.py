@@ -640,7 +640,7 @@ class Volume(_snowglass.Volume):
         annotations: dict[str, Any] = {"letters": False, "legend": False}
         if letters:
             annotations["texts"] = _sheet_texts(places, axis is not None)
-        self._annotate(image, "slice", transfer, look, annotations, mixture)
+        self._annotate(image, "slice", transfer, look, annotations)
         image.stats = {"indices": [place[0] for place in places]}
         return image
 
@@ -774,7 +774,7 @@ def _sheet_texts(places: Sequence[Any], numbered: bool
     for n, (index, x, y, width, height, edges) in enumerate(places):
         side = min(width, height)
         tall = float(max(9, round(0.06 * side)))
-        margin = max(0.6 * tall, 4)
+        margin = 0.02 * min(places[0][3:5])
         for letter, across, down in zip(edges, (0, 1, .5, .5), (.5, .5, 0, 1)):
             if letter and (n == 0 or not numbered):
                 texts.append((x + margin + across * (width - 2 * margin),

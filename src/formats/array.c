@@ -32,16 +32,6 @@ typedef struct array_reader {
     uint64_t room; /* size of the buffer in bytes */
 } array_reader;
 
-snow_type snow_numpy_type(char kind, size_t bytes, snow_coding *coding) {
-    const bool is_bool = kind == 'b' && bytes == 1;
-    const bool half = kind == 'f' && bytes == 2;
-    *coding = is_bool ? SNOW_CODING_BOOL
-              : half  ? SNOW_CODING_HALF
-                      : SNOW_CODING_PLAIN;
-    return is_bool ? SNOW_TYPE_UINT8
-                   : snow_type_of_kind(kind, half ? 4 : bytes);
-}
-
 size_t snow_coding_size(snow_coding coding, snow_type type) {
     return coding == SNOW_CODING_HALF   ? 2
            : coding == SNOW_CODING_BOOL ? 1

@@ -136,6 +136,16 @@ snow_type snow_type_of_kind(char kind, size_t bytes) {
     return SNOW_TYPE_NONE;
 }
 
+snow_type snow_numpy_type(char kind, size_t bytes, snow_coding *coding) {
+    const bool is_bool = kind == 'b' && bytes == 1;
+    const bool half = kind == 'f' && bytes == 2;
+    *coding = is_bool ? SNOW_CODING_BOOL
+              : half  ? SNOW_CODING_HALF
+                      : SNOW_CODING_PLAIN;
+    return is_bool ? SNOW_TYPE_UINT8
+                   : snow_type_of_kind(kind, half ? 4 : bytes);
+}
+
 bool snow_format_has_name(const snow_format *format, const char *name) {
     for (const char *const *suffix = format->suffixes; *suffix; suffix++)
         if (snow_has_suffix(name, *suffix))

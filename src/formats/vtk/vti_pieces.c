@@ -107,8 +107,8 @@ static snow_status open_piece(void *user, size_t index,
                               snow_volume_info *info, snow_volume **out) {
     vti_pieces *p = user;
     spliced part = {p->bytes, p->head, p->places[index] - p->head};
-    const snow_bytes_behind behind = {
-        read_spliced, &part, snow_seekable_size(p->bytes) - part.shift};
+    const uint64_t size = snow_seekable_size(p->bytes) - part.shift;
+    const snow_bytes_behind behind = {read_spliced, &part, size};
     vti_header header = {.one_piece = true};
     snow_source *source;
     snow_volume *volume = NULL;
