@@ -242,6 +242,11 @@ static void bytes_before_the_voxels_are_skipped(void **state) {
     for (int i = 0; i < 2; i++) {
         file f = make_file(header_with(lines[i]), voxels, 30);
         expect_sample(open_file(*state, &f));
+        unsigned char packed[1024]; /* of a length that is not known before */
+        const size_t size =
+            support_deflate(31, f.bytes, f.size, packed, sizeof packed);
+        expect_sample(
+            support_opened_bytes(*state, "a.mha.gz", packed, size, NULL));
     }
 }
 

@@ -242,11 +242,12 @@ static snow_status name_of(snow_source *source, const snow_detached *data,
     /* The count was checked: first + index * step is in the range. */
     const int64_t number =
         (int64_t)((uint64_t)data->first + index * (uint64_t)data->step);
-    *at = *at ? *at + strlen(*at) + 1 : data->name;
-    if (data->place == SNOW_DATA_PATTERN
-            ? snow_detached_name(data->name, data->name_bytes, number, name,
-                                 MOST_NAME_BYTES)
-            : snprintf(name, MOST_NAME_BYTES, "%s", *at) < MOST_NAME_BYTES)
+    const bool pattern = data->place == SNOW_DATA_PATTERN;
+    if (!pattern)
+        *at = *at ? *at + strlen(*at) + 1 : data->name;
+    if (pattern ? snow_detached_name(data->name, data->name_bytes, number, name,
+                                     MOST_NAME_BYTES)
+                : snprintf(name, MOST_NAME_BYTES, "%s", *at) < MOST_NAME_BYTES)
         return SNOW_STATUS_OK;
     return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
                      "the name of data file %llu is too long; correct the "
