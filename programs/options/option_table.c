@@ -349,7 +349,7 @@ const verb_row verb_table[] = {
     {"movie", VERB_MOVIE, -1, "INPUT...|run_%04d.nrrd -o OUT",
      "make a movie over time steps"},
     {"slice", VERB_SLICE, 1, "INPUT [--axis A] [--at N] [-o OUT]",
-     "make a picture of one slice or of several, or a movie of them"},
+     "make a picture of one slice or several, or a movie"},
     {"info", VERB_INFO, -1, "INPUT... [--json]",
      "print geometry, type, range, histogram and sparse ratio"},
     {"phantom", VERB_PHANTOM, 1, "NAME -o OUT", "write a built-in test volume"},

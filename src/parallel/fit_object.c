@@ -17,7 +17,7 @@
 #include <string.h>
 
 /* Blocks along the longest side. */
-#define BLOCKS 64
+#define BLOCKS 48
 
 /* A pixel of less alpha is not seen; for so little, alpha is the sum of
  * opacities. */

@@ -59,7 +59,20 @@ static void each_view_stands_where_its_name_says(void **state) {
     for (; snow_view_name(count); count++)
         for (size_t n = 0; n < NAMES; n++)
             known += strcmp(snow_view_name(count), names[n].name) == 0;
-    assert_true(count == NAMES && known == NAMES);
+    assert_true(count == NAMES + 1 && known == NAMES);
+    /* From the front, 30 degrees to the right and 25 up. */
+    const double turn = acos(-1) / 6, rise = acos(-1) * 25 / 180;
+    const double back[3] = {sin(turn) * cos(rise), -cos(turn) * cos(rise),
+                            sin(rise)};
+    const double up[3] = {-sin(turn) * sin(rise), cos(turn) * sin(rise),
+                          cos(rise)};
+    snow_view oblique = {.size = sizeof oblique};
+    assert_int_equal(snow_view_from_name(stage->context, "oblique", &oblique),
+                     SNOW_STATUS_OK);
+    for (int c = 0; c < 3; c++) {
+        assert_near(oblique.back[c], back[c], 1e-15);
+        assert_near(oblique.up[c], up[c], 1e-15);
+    }
 }
 
 static void an_unknown_view_is_refused(void **state) {

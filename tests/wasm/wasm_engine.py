@@ -164,7 +164,7 @@ strangers = [
      ("a.jpg", "lacks", "JPEG")),
     ("vti", write("a.vti", b'<?xml version="1.0"?>\n<VTKFile type="ImageData" '
                   b'version="1.0"><ImageData WholeExtent="0 1 0 1 0 1"/></VTKFile>'),
-     ("a.vti", "lacks", "VTI")),
+     ("a.vti", "lacks", "XML")),
     ("dicom", write("a.dcm", dicom(0, "1.2.840.10008.1.2.4.70")),
      ("a.dcm", "compressed DICOM", "1.2.840.10008.1.2.4.70")),
     ("zarr", ["packed.zarr", *packed], ("packed.zarr", "lacks", "zstd")),
