@@ -392,12 +392,12 @@ static bool tell_places(const request *r, sheet *s) {
         if (place_part(r, s, n, &p) ||
             snow_view_orientation(context, info, &p.view, edges))
             break;
-        PyObject *told = Py_BuildValue("(Liiii(ssss))", (long long)p.index, p.x,
-                                       p.y, p.view.width, p.view.height,
-                                       edges[0], edges[1], edges[2], edges[3]);
-        if (!told || PyList_Append(s->places, told))
+        PyObject *row = Py_BuildValue("(Liiii(ssss))", (long long)p.index, p.x,
+                                      p.y, p.view.width, p.view.height,
+                                      edges[0], edges[1], edges[2], edges[3]);
+        if (!row || PyList_Append(s->places, row))
             Py_CLEAR(s->places);
-        Py_XDECREF(told);
+        Py_XDECREF(row);
     }
     return s->places != NULL;
 }

@@ -192,11 +192,8 @@ static snow_status add_annotations(const picture_annotations *annotations,
         status = add_legend(annotations, overlay);
     if (status == SNOW_STATUS_OK && opts->legend.scale)
         status = snow_overlay_scale_bar(overlay, &annotations->info, view);
-    if (status == SNOW_STATUS_OK)
-        status =
-            opts->no_labels
-                ? status
-                : snow_overlay_orientation(overlay, &annotations->info, view);
+    if (status == SNOW_STATUS_OK && !opts->no_labels)
+        status = snow_overlay_orientation(overlay, &annotations->info, view);
     if (status == SNOW_STATUS_OK)
         status = add_title(annotations, step, overlay);
     if (status == SNOW_STATUS_OK && opts->box)

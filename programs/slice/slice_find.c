@@ -70,10 +70,10 @@ int slice_choose_kind(slice_work *w) {
         return fail_usage("--axis: --ortho has all three; remove it");
     if (opts->grid)
         return choose_grid(w);
-    w->kind = opts->ortho                                      ? SLICE_ORTHO
-              : names_are_meant(opts->output)                  ? SLICE_FRAMES
-              : movie && (movie->arguments || (movie && many)) ? SLICE_FRAMES
-                                                               : SLICE_ONE;
+    w->kind = opts->ortho                           ? SLICE_ORTHO
+              : names_are_meant(opts->output)       ? SLICE_FRAMES
+              : movie && (movie->arguments || many) ? SLICE_FRAMES
+                                                    : SLICE_ONE;
     if (w->kind != SLICE_FRAMES && (opts->resume || options_given(opts, "fps")))
         return fail_usage("--%s: is of many pictures; number the files, as in "
                           "s_%%03d.png, or name a movie (.mp4)",

@@ -380,11 +380,11 @@ thick[3, 3, 5] = 4000  # not 1 %
 nifti("thick.nii", thick, MATRIX)
 run("thick.nii", "--grid", "3x2", "--stats", "g.json",
     "--no-labels", "--bits", "16", out="out.png")
-told = json.loads(oracle.got("g.json"))["slice"]["indices"]
-check("a grid's slices", told == [int(8 + (n + 0.5) * 4) for n in range(6)])
+indices = json.loads(oracle.got("g.json"))["slice"]["indices"]
+check("a grid's slices", indices == [int(8 + (n + 0.5) * 4) for n in range(6)])
 path = "thick.nii"
 sheet = np.zeros((2 * 14 + 2, 3 * 12 + 4, 4))
-for n, index in enumerate(told):
+for n, index in enumerate(indices):
     y, x = n // 3 * 16, n % 3 * 14
     sheet[y:y + 14, x:x + 12] = (plane(thick, 2, index) / 4000)[..., None]
     sheet[y:y + 14, x:x + 12, 3] = 1
