@@ -1,8 +1,9 @@
 /* tests/formats/test_zarr.c - Zarr: what is read of a store and what memory it
  * takes. Values and places are compared with zarr in oracle_zarr.py; stores are
- * records in memory here (formats/zarr/zarr.h). */
+ * written from records here. */
 #include "formats/zarr/zarr.h"
 #include "support/files.h"
+#include "support/records.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -48,13 +49,17 @@ static snow_status open_records(support_files *files, const records *r,
                                 const snow_volume_options *options,
                                 snow_volume **out) {
     const snow_volume_options none = {.size = sizeof none, .time = 0};
-    const zarr_store store = {
-        .context = files->context, .records = r->bytes, .size = r->size};
+    zarr_store store = {.context = files->context};
+    char folder[32];
     snow_volume_info info = {.size = sizeof info};
     files->largest = 0;
     *files->warnings = 0;
-    return snow_zarr_read_store(&store, path, options ? options : &none, &info,
-                                out);
+    records_unpack(r->bytes, r->size, folder);
+    snprintf(store.folder, sizeof store.folder, "%s", folder);
+    snow_status status = snow_zarr_read_store(
+        &store, path, options ? options : &none, &info, out);
+    records_remove(folder);
+    return status;
 }
 
 static void expect_refused(support_files *files, const records *r,

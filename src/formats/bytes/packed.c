@@ -18,13 +18,6 @@ bool snow_looks_bzip2(const void *bytes, size_t size) {
 /* A block of 900,000 bytes, each five of which stand for 255, has 32 bytes at
  * least. */
 #define MOST_RATIO ((uint64_t)1500000)
-#define SLACK 64
-
-typedef struct bzip2_filter {
-    snow_filter_stage filter;
-    bz_stream stream;
-    bool begun, ended;
-} bzip2_filter;
 
 static void *allocate_bzip2(void *context, int count, int size) {
     return snow_allocate_array(context, (uint64_t)count, (size_t)size);
@@ -34,97 +27,49 @@ static void release_bzip2(void *context, void *block) {
     snow_release(context, block);
 }
 
-static void end_bzip2(snow_filter_stage *filter) {
-    bzip2_filter *bzip2 = (bzip2_filter *)filter;
-    if (bzip2->begun)
-        BZ2_bzDecompressEnd(&bzip2->stream);
-    bzip2->begun = false;
+static bool begin_bzip2(void *state, snow_context *context) {
+    bz_stream *stream = state;
+    stream->bzalloc = allocate_bzip2;
+    stream->bzfree = release_bzip2;
+    stream->opaque = context;
+    return BZ2_bzDecompressInit(stream, 0, 0) == BZ_OK;
 }
 
-static snow_status begin_bzip2(bzip2_filter *bzip2) {
-    bzip2->stream.bzalloc = allocate_bzip2;
-    bzip2->stream.bzfree = release_bzip2;
-    bzip2->stream.opaque = bzip2->filter.context;
-    bzip2->begun = BZ2_bzDecompressInit(&bzip2->stream, 0, 0) == BZ_OK;
-    return bzip2->begun ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+static snow_decoded decode_bzip2(void *state, unsigned char *from,
+                                 unsigned *packed, void *to, unsigned *room) {
+    bz_stream *stream = state;
+    stream->next_in = (char *)from;
+    stream->avail_in = *packed;
+    stream->next_out = to;
+    stream->avail_out = *room;
+    const int answer = BZ2_bzDecompress(stream);
+    *packed = stream->avail_in;
+    *room = stream->avail_out;
+    return answer == BZ_OK           ? SNOW_DECODED_SOME
+           : answer == BZ_STREAM_END ? SNOW_DECODED_END
+           : answer == BZ_MEM_ERROR  ? SNOW_DECODED_NO_MEMORY
+                                     : SNOW_DECODED_DAMAGED;
 }
 
-/* Behind the end of a stream: another one, or the end of the data. */
-static snow_status next_stream(bzip2_filter *bzip2) {
-    snow_filter_stage *below = bzip2->filter.below;
-    end_bzip2(&bzip2->filter);
-    SNOW_TRY(snow_filter_stage_fill(below, 4));
-    const size_t left = below->end - below->begin;
-    if (left >= 4 && !memcmp(below->buffer + below->begin, "BZh", 3))
-        return begin_bzip2(bzip2);
-    bzip2->ended = true;
-    if (left)
-        snow_notify(below->context,
-                    "%s: bytes after the end of the compressed data are "
-                    "ignored",
-                    below->name);
-    return SNOW_STATUS_OK;
+static void end_bzip2(void *state) {
+    BZ2_bzDecompressEnd(state);
 }
 
-static snow_status unpack_some(bzip2_filter *bzip2) {
-    snow_filter_stage *below = bzip2->filter.below;
-    SNOW_TRY(snow_filter_stage_fill(below, 1));
-    const size_t packed = below->end - below->begin;
-    bzip2->stream.next_in = (char *)below->buffer + below->begin;
-    bzip2->stream.avail_in = (unsigned)packed;
-    const int answer =
-        packed ? BZ2_bzDecompress(&bzip2->stream) : BZ_UNEXPECTED_EOF;
-    snow_filter_stage_drop(below, packed - bzip2->stream.avail_in);
-    if (answer == BZ_STREAM_END)
-        return next_stream(bzip2);
-    if (answer == BZ_OK)
-        return SNOW_STATUS_OK;
-    if (answer == BZ_MEM_ERROR)
-        return SNOW_STATUS_NO_MEMORY; /* snow_allocate set the message */
-    return snow_fail(below->context, SNOW_STATUS_BAD_INPUT,
-                     "%s: the compressed data are %s; fetch or compress the "
-                     "file again",
-                     below->name,
-                     answer == BZ_UNEXPECTED_EOF ? "truncated" : "damaged");
-}
-
-static snow_status pull_bzip2(snow_filter_stage *filter, void *bytes,
-                              size_t size, size_t *got) {
-    bzip2_filter *bzip2 = (bzip2_filter *)filter;
-    const unsigned wanted = size > 1u << 30 ? 1u << 30 : (unsigned)size;
-    bzip2->stream.next_out = bytes;
-    bzip2->stream.avail_out = wanted;
-    while (!bzip2->ended && bzip2->stream.avail_out == wanted)
-        SNOW_TRY(unpack_some(bzip2));
-    *got = wanted - bzip2->stream.avail_out;
-    return SNOW_STATUS_OK;
-}
-
-static uint64_t limit_bzip2(const snow_filter_stage *filter) {
-    uint64_t limit = snow_filter_stage_limit(filter->below);
-    if (!snow_add_u64(limit, SLACK, &limit) ||
-        !snow_mul_u64(limit, MOST_RATIO, &limit) ||
-        !snow_add_u64(limit, filter->end - filter->begin, &limit))
-        return UINT64_MAX;
-    return limit;
+static bool begins_bzip2(const unsigned char *bytes, size_t size) {
+    return size >= 4 && !memcmp(bytes, "BZh", 3);
 }
 
 static snow_status open_bzip2(snow_filter_stage *below,
                               snow_filter_stage **out) {
-    bzip2_filter *bzip2 = snow_filter_stage_over(below, sizeof *bzip2);
-    if (!bzip2)
-        return SNOW_STATUS_NO_MEMORY;
-    snow_status status = begin_bzip2(bzip2);
-    if (status != SNOW_STATUS_OK) {
-        snow_release(below->context, bzip2);
-        return status;
-    }
-    bzip2->filter.pull = pull_bzip2;
-    bzip2->filter.limit = limit_bzip2;
-    bzip2->filter.fini = end_bzip2;
-    below->context->inflates = true;
-    *out = &bzip2->filter;
-    return SNOW_STATUS_OK;
+    static const snow_decoder bzip2 = {
+        .bytes = sizeof(bz_stream),
+        .begin = begin_bzip2,
+        .decode = decode_bzip2,
+        .end = end_bzip2,
+        .begins = begins_bzip2,
+        .ratio = MOST_RATIO,
+    };
+    return snow_filter_stage_open_decoder(below, &bzip2, out);
 }
 
 #else

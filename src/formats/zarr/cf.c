@@ -5,7 +5,9 @@
  *     .zarray      fill_value, which xarray's version 2 has for _FillValue
  *     .zattrs      _ARRAY_DIMENSIONS, scale_factor, units, ...
  *     zarr.json    dimension_names; _FillValue as base64 of a double */
+#include "formats/bytes/number.h"
 #include "formats/zarr/zarr.h"
+#include "io/filters/filters.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,24 +15,20 @@
 
 /* --- attributes ----------------------------------------------------------- */
 
-/* Eight bytes as twelve letters, which xarray writes for a float. */
-static bool read_base64(const char *text, double *out) {
-    static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklm"
-                                  "nopqrstuvwxyz0123456789+/";
-    uint64_t bits = 0, bytes = 0;
-    if (strlen(text) != 12 || text[11] != '=')
+/* The eight bytes of a double, which xarray writes for a float. */
+static bool read_base64(snow_context *context, const char *text, double *out) {
+    unsigned char bytes[9];
+    size_t got = 0;
+    snow_source *source;
+    if (snow_source_open_memory(context, "_FillValue", text, strlen(text),
+                                &source) != SNOW_STATUS_OK)
         return false;
-    for (int i = 0; i < 11; i++) {
-        const char *at = strchr(letters, text[i]);
-        if (!at)
-            return false;
-        const uint64_t six = (uint64_t)(at - letters);
-        bits = i < 10 ? bits << 6 | six : bits << 4 | six >> 2;
-    }
-    for (int i = 0; i < 8; i++) /* the low byte came first */
-        bytes |= (bits >> (56 - 8 * i) & 255) << (8 * i);
-    memcpy(out, &bytes, sizeof bytes);
-    return true;
+    if (snow_source_unpack_base64(source) == SNOW_STATUS_OK)
+        snow_source_read(source, bytes, sizeof bytes, &got);
+    snow_source_close(source);
+    const uint64_t bits = got == 8 ? snow_number_at(bytes, 8, false) : 0;
+    memcpy(out, &bits, sizeof bits);
+    return got == 8;
 }
 
 static bool add_number(const json_t *given, cf_attribute *out) {
@@ -46,7 +44,8 @@ static bool add_number(const json_t *given, cf_attribute *out) {
     return true;
 }
 
-static void convert(const char *name, const json_t *given, cf_attribute *out) {
+static void convert(snow_context *context, const char *name,
+                    const json_t *given, cf_attribute *out) {
     const char *text = json_string_value(given);
     double value;
     memset(out, 0, sizeof *out);
@@ -55,7 +54,7 @@ static void convert(const char *name, const json_t *given, cf_attribute *out) {
             memcpy(out->text, "?", 2); /* no list of numbers */
     if (json_is_array(given) || add_number(given, out) || !text)
         return;
-    if (!strcmp(name, "_FillValue") && read_base64(text, &value)) {
+    if (!strcmp(name, "_FillValue") && read_base64(context, text, &value)) {
         out->numbers[0] = snow_cf_number(value);
         out->count = 1;
     } else {
@@ -63,12 +62,13 @@ static void convert(const char *name, const json_t *given, cf_attribute *out) {
     }
 }
 
-static void read_attributes(const json_t *from, cf_attributes *out) {
+static void read_attributes(snow_context *context, const json_t *from,
+                            cf_attributes *out) {
     cf_attribute given;
     snow_cf_attributes_begin(out);
     for (const char *const *name = snow_cf_names; *name; name++) {
         const json_t *item = json_object_get(from, *name);
-        convert(*name, item, &given);
+        convert(context, *name, item, &given);
         if (item)
             snow_cf_take(*name, &given, out);
     }
@@ -123,7 +123,7 @@ static snow_status take_node(const zarr_store *store, const char *path,
     }
     if (!fits(&array, count))
         return SNOW_STATUS_OK;
-    read_attributes(node->attributes, &says);
+    read_attributes(store->context, node->attributes, &says);
     *hint = snow_cf_hint(name, &says);
     SNOW_TRY(read_values(&array, &values));
     snow_cf_take_axis(store->context, &says, array.type, false, count, values,
@@ -175,7 +175,7 @@ snow_status snow_zarr_read_cf(const zarr_found *found, zarr_cf *out) {
     const zarr_array *array = &found->array;
     bool applies;
     memset(out, 0, sizeof *out);
-    read_attributes(found->attributes, &out->says);
+    read_attributes(array->store->context, found->attributes, &out->says);
     applies = out->says.any;
     for (int i = 0; i < array->axes && !found->image; i++) {
         const int from_end = array->axes - 1 - i;

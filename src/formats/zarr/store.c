@@ -4,7 +4,6 @@
  * answer.  Names come from numbers and from checked paths: none leads out of
  * the store, but for links that the owner of the folder has made. */
 #include "base/monitor.h"
-#include "formats/bytes/number.h"
 #include "formats/zarr/zarr.h"
 #include "io/folder.h"
 #include "io/lookup.h"
@@ -34,43 +33,6 @@ snow_status snow_zarr_join(const zarr_store *store, const char *path,
                                 ZARR_PATH_BYTES);
 }
 
-/* --- records in memory ---------------------------------------------------- */
-
-typedef struct record {
-    const char *name;
-    size_t letters;
-    const unsigned char *bytes;
-    size_t size;
-} record;
-
-/* Reads the record at *at, and moves it to the next; returns false at the end,
- * or if a record is truncated. */
-static bool next_record(const zarr_store *store, size_t *at, record *out) {
-    const unsigned char *begin = store->records + *at;
-    size_t left = store->size - *at;
-    if (!left || left < (size_t)begin[0] + 5)
-        return false;
-    const unsigned char *count = begin + 1 + begin[0];
-    size_t size = (size_t)snow_number_at(count, 4, false);
-    if (size > left - begin[0] - 5)
-        return false;
-    *out = (record){(const char *)begin + 1, begin[0], count + 4, size};
-    *at += begin[0] + 5 + size;
-    return true;
-}
-
-static void open_record(const zarr_store *store, const char *name,
-                        zarr_file *out) {
-    record r;
-    for (size_t at = 0; next_record(store, &at, &r);)
-        if (strlen(name) == r.letters && !memcmp(name, r.name, r.letters)) {
-            out->is_there = true;
-            out->bytes = r.bytes;
-            out->size = r.size;
-            return;
-        }
-}
-
 /* --- files ---------------------------------------------------------------- */
 
 static snow_status fail_by_errno(const zarr_file *file, const char *done) {
@@ -78,14 +40,18 @@ static snow_status fail_by_errno(const zarr_file *file, const char *done) {
 }
 
 /* Checks the kind first, since opening a device can have side effects. */
-static snow_status open_file(zarr_file *out) {
+snow_status snow_zarr_open(const zarr_store *store, const char *name,
+                           zarr_file *out) {
     struct stat about;
     mode_t mode;
-    SNOW_TRY(snow_look_for(out->store->context, out->name, &mode));
+    *out = (zarr_file){.store = store, .descriptor = -1};
+    snprintf(out->name, sizeof out->name, "%s%s%s", store->folder,
+             *name ? "/" : "", name);
+    SNOW_TRY(snow_look_for(store->context, out->name, &mode));
     if (!mode)
         return SNOW_STATUS_OK;
     if (!S_ISREG(mode))
-        return snow_fail(out->store->context, SNOW_STATUS_BAD_INPUT,
+        return snow_fail(store->context, SNOW_STATUS_BAD_INPUT,
                          "%s: is not a regular file, which is required here; "
                          "copy the array again",
                          out->name);
@@ -102,17 +68,6 @@ static snow_status open_file(zarr_file *out) {
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_zarr_open(const zarr_store *store, const char *name,
-                           zarr_file *out) {
-    *out = (zarr_file){.store = store, .descriptor = -1};
-    snprintf(out->name, sizeof out->name, "%s%s%s", store->folder,
-             *store->folder && *name ? "/" : "", name);
-    if (*store->folder)
-        return open_file(out);
-    open_record(store, name, out);
-    return SNOW_STATUS_OK;
-}
-
 void snow_zarr_close(zarr_file *file) {
     if (file->descriptor >= 0)
         close(file->descriptor);
@@ -121,10 +76,6 @@ void snow_zarr_close(zarr_file *file) {
 
 snow_status snow_zarr_read(const zarr_file *file, uint64_t first,
                            unsigned char *bytes, size_t count) {
-    if (file->bytes) {
-        memcpy(bytes, file->bytes + first, count);
-        return SNOW_STATUS_OK;
-    }
     for (size_t done = 0; done < count;) {
         ssize_t got =
             pread(file->descriptor, bytes + done,
@@ -153,9 +104,7 @@ typedef struct name_list {
 } name_list;
 
 static snow_status add_name(const zarr_store *store, name_list *list,
-                            const char *name, size_t letters) {
-    if (!letters || *name == '.' || letters >= 256)
-        return SNOW_STATUS_OK;
+                            const char *name) {
     if (list->count == MOST_NAMES)
         return snow_fail(store->context, SNOW_STATUS_BAD_INPUT,
                          "has more than %d folders in one; name an array with "
@@ -163,31 +112,7 @@ static snow_status add_name(const zarr_store *store, name_list *list,
                          MOST_NAMES);
     SNOW_TRY(SNOW_RESERVE(store->context, list->names, list->count,
                           list->count + 1));
-    memcpy(list->names[list->count], name, letters);
-    list->names[list->count++][letters] = 0;
-    return SNOW_STATUS_OK;
-}
-
-/* Folders are not stored: they are prefixes of names. */
-static snow_status list_records(const zarr_store *store, const char *path,
-                                name_list *list) {
-    size_t length = strlen(path);
-    record r;
-    for (size_t at = 0; next_record(store, &at, &r);) {
-        size_t skip = length ? length + 1 : 0;
-        if (r.letters <= skip || memcmp(r.name, path, length) != 0 ||
-            (length && r.name[length] != '/'))
-            continue;
-        const char *slash = memchr(r.name + skip, '/', r.letters - skip);
-        size_t letters = slash ? (size_t)(slash - r.name) - skip : 0;
-        const char *name = r.name + skip;
-        size_t n = 0;
-        while (n < list->count && (strncmp(list->names[n], name, letters) ||
-                                   list->names[n][letters]))
-            n++;
-        if (n == list->count)
-            SNOW_TRY(add_name(store, list, name, letters));
-    }
+    snprintf(list->names[list->count++], sizeof *list->names, "%s", name);
     return SNOW_STATUS_OK;
 }
 
@@ -209,8 +134,7 @@ static snow_status list_folder(const zarr_store *store, const char *path,
                  folder[length - 1] == '/' ? "" : "/", entry->d_name);
         status = snow_look_at_given(store->context, whole, &mode);
         if (status == SNOW_STATUS_OK && S_ISDIR(mode))
-            status =
-                add_name(store, list, entry->d_name, strlen(entry->d_name));
+            status = add_name(store, list, entry->d_name);
     }
     if (status == SNOW_STATUS_OK && errno)
         status = snow_lookup_fail(store->context, folder, "listed to its end");
@@ -225,8 +149,7 @@ static int compare_names(const void *a, const void *b) {
 snow_status snow_zarr_visit(const zarr_store *store, const char *path,
                             zarr_visit_fn *visit, void *user) {
     name_list list = {0};
-    snow_status status = *store->folder ? list_folder(store, path, &list)
-                                        : list_records(store, path, &list);
+    snow_status status = list_folder(store, path, &list);
     if (status == SNOW_STATUS_OK && list.count)
         qsort(list.names, list.count, sizeof *list.names, compare_names);
     for (size_t i = 0; i < list.count && status == SNOW_STATUS_OK; i++)

@@ -35,15 +35,10 @@
 
 /* --- store.c -------------------------------------------------------------- */
 
-/* A map from names to bytes: a folder, or records in memory.  A record is a
- * byte with the length of the name, the name, four bytes with the size of the
- * data, the low one first, and the data. */
+/* A map from names to bytes: a folder. */
 typedef struct zarr_store {
     snow_context *context;
-    char
-        folder[ZARR_PATH_BYTES]; /* "" for memory; without a slash at its end */
-    const unsigned char *records;
-    size_t size;
+    char folder[ZARR_PATH_BYTES]; /* without a slash at its end */
 } zarr_store;
 
 /* One file of it, open. */
@@ -52,8 +47,7 @@ typedef struct zarr_file {
     char name[2 * ZARR_PATH_BYTES]; /* for messages: with the folder */
     bool is_there; /* if false, the other fields are undefined */
     uint64_t size;
-    int descriptor; /* -1 in memory */
-    const unsigned char *bytes;
+    int descriptor; /* -1 while none is open */
 } zarr_file;
 
 /* Opens the file of a name; a missing file is not a failure.  Errors:
@@ -302,7 +296,7 @@ snow_status snow_zarr_read_folder(snow_context *context, const char *path,
                                   const snow_volume_options *options,
                                   snow_volume_info *info, snow_volume **out);
 
-/* The same for records in memory, from a path in them. */
+/* The same from a path within a store. */
 snow_status snow_zarr_read_store(const zarr_store *store, const char *path,
                                  const snow_volume_options *options,
                                  snow_volume_info *info, snow_volume **out);

@@ -267,3 +267,9 @@ snow_status snow_filter_stage_open_memory(snow_context *context,
     *out = &memory->filter;
     return SNOW_STATUS_OK;
 }
+
+uint64_t snow_filter_stage_limit(const snow_filter_stage *filter) {
+    return filter->size >= 0 ? (uint64_t)snow_filter_stage_remaining(filter)
+           : filter->limit   ? filter->limit(filter)
+                             : UINT64_MAX;
+}

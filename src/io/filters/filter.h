@@ -53,7 +53,32 @@ snow_status snow_filter_stage_open_with(snow_context *context, const char *name,
                                         const snow_bytes_behind *bytes,
                                         snow_filter_stage **out);
 
-/* Adds a stage on top that unpacks gzip or zlib; owns `below` on success. */
+/* How a decoder went on: *packed and *room are what it left. */
+typedef enum snow_decoded {
+    SNOW_DECODED_SOME,
+    SNOW_DECODED_END, /* of a stream */
+    SNOW_DECODED_DAMAGED,
+    SNOW_DECODED_NO_MEMORY /* snow_allocate set the message */
+} snow_decoded;
+
+/* A decoder of streams, several of which may follow one another. */
+typedef struct snow_decoder {
+    size_t bytes; /* of its state, which is cleared before each stream */
+    bool (*begin)(void *state, snow_context *context); /* false: no memory */
+    snow_decoded (*decode)(void *state, unsigned char *from, unsigned *packed,
+                           void *to, unsigned *room);
+    void (*end)(void *state);
+    /* Whether bytes begin another stream. */
+    bool (*begins)(const unsigned char *bytes, size_t size);
+    uint64_t ratio; /* at most so many bytes come of one */
+} snow_decoder;
+
+/* Adds a stage on top that decodes them; owns `below` on success. */
+snow_status snow_filter_stage_open_decoder(snow_filter_stage *below,
+                                           const snow_decoder *decoder,
+                                           snow_filter_stage **out);
+
+/* The same for gzip or zlib. */
 snow_status snow_filter_stage_open_inflate(snow_filter_stage *below,
                                            snow_filter_stage **out);
 
