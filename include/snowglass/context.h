@@ -67,8 +67,7 @@ SNOW_API void snow_context_set_progress(
 /* The most bytes that its objects may hold together; 0: no limit. */
 SNOW_API void snow_context_set_memory_limit(snow_context *, uint64_t bytes);
 
-/* Bytes that its objects hold, the most they ever held, and bytes read from
- * files, compressed ones as stored. */
+/* Bytes its objects hold, the most ever held, and bytes read, as stored. */
 SNOW_API uint64_t snow_context_bytes(const snow_context *context);
 SNOW_API uint64_t snow_context_peak_bytes(const snow_context *context);
 SNOW_API uint64_t snow_context_bytes_read(const snow_context *context);

@@ -45,6 +45,7 @@ typedef enum snow_isa {
     SNOW_ISA_SCALAR,
     SNOW_ISA_AVX2,
     SNOW_ISA_AVX512,
+    SNOW_ISA_SSE4,
     SNOW_ISA_NEON,
     SNOW_ISA_WASM
 } snow_isa;

@@ -254,9 +254,9 @@ const option_row option_table[] = {
      4096, "number of threads; the picture does not depend on it (default: all "
      "processors available to the process)"},
     {"deterministic", 0, NULL, TOPIC_RUN, RENDER, read_flag,
-     FIELD(deterministic), 0, 0, "compute with scalar code, which gives the same bits on every machine "
+     FIELD(deterministic), 0, 0, "compute as scalar code does, which gives the same bits on every machine "
      "(the number of threads never changes the bits)"},
-    {"isa", 0, "auto|scalar|avx2|avx512|neon|wasm", TOPIC_RUN, RENDER, read_choice,
+    {"isa", 0, "auto|scalar|avx2|avx512|sse4|neon|wasm", TOPIC_RUN, RENDER, read_choice,
      FIELD(isa), 0, 0, "instruction set to use (default auto: the best of this machine)"},
     {"progress", 0, "auto|always|never", TOPIC_RUN, FILED, read_choice,
      FIELD(progress), 0, 0, "progress on stderr. auto: a status line or bar on a terminal, otherwise "

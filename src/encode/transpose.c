@@ -53,7 +53,8 @@ SNOW_AVX2_INLINE void wide_spread(__m256i vector, unsigned char *out,
 
 snow_transpose_fn *snow_transpose_of(size_t size, snow_isa isa) {
 #if SNOW_HAS_AVX
-    if (size <= 2 && isa != SNOW_ISA_SCALAR) /* no faster by AVX-512 */
+    /* No faster by AVX-512. */
+    if (size <= 2 && (isa == SNOW_ISA_AVX2 || isa == SNOW_ISA_AVX512))
         return size == 1 ? transpose_1_avx2 : transpose_2_avx2;
 #endif
     (void)isa;

@@ -47,7 +47,7 @@ static snow_status resolve_machine(snow_context *context, snow_settings *s) {
     if (s->threads == 0)
         s->threads = snow_processors();
     if (s->deterministic)
-        s->isa = SNOW_ISA_SCALAR;
+        s->isa = snow_isa_same();
     if (!snow_isa_runs(s->isa))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "this machine cannot run %s: it supports %s",

@@ -7,7 +7,8 @@
 static const char *const names[] = {
     [SNOW_ISA_AUTO] = "auto", [SNOW_ISA_SCALAR] = "scalar",
     [SNOW_ISA_AVX2] = "avx2", [SNOW_ISA_AVX512] = "avx512",
-    [SNOW_ISA_NEON] = "neon", [SNOW_ISA_WASM] = "wasm",
+    [SNOW_ISA_SSE4] = "sse4", [SNOW_ISA_NEON] = "neon",
+    [SNOW_ISA_WASM] = "wasm",
 };
 
 #define LEVELS (int)(sizeof names / sizeof names[0])
@@ -52,14 +53,19 @@ static bool has_avx512(void) {
 }
 #endif
 
-/* The instruction set that a machine always has beside scalar, or scalar. */
+snow_isa snow_isa_same(void) {
 #if !SNOW_HAS_V128
-#define V128 SNOW_ISA_SCALAR
+    return SNOW_ISA_SCALAR;
+#elif SNOW_HAS_AVX
+    return __builtin_cpu_supports("sse4.1") && __builtin_cpu_supports("popcnt")
+               ? SNOW_ISA_SSE4
+               : SNOW_ISA_SCALAR;
 #elif defined(__aarch64__)
-#define V128 SNOW_ISA_NEON
+    return SNOW_ISA_NEON;
 #else
-#define V128 SNOW_ISA_WASM
+    return SNOW_ISA_WASM;
 #endif
+}
 
 bool snow_isa_runs(snow_isa isa) {
     switch (isa) {
@@ -69,30 +75,35 @@ bool snow_isa_runs(snow_isa isa) {
         return has_avx512();
     case SNOW_ISA_NEON:
     case SNOW_ISA_WASM:
-        return isa == V128;
+    case SNOW_ISA_SSE4:
+        return isa == snow_isa_same();
     default:
         return true;
     }
 }
 
 snow_isa snow_isa_resolve(snow_isa isa) {
-    if (isa != SNOW_ISA_AUTO)
-        return isa;
-    if (has_avx512())
-        return SNOW_ISA_AVX512;
-    if (has_avx2())
-        return SNOW_ISA_AVX2;
-    return V128;
+    return isa != SNOW_ISA_AUTO ? isa
+           : has_avx512()       ? SNOW_ISA_AVX512
+           : has_avx2()         ? SNOW_ISA_AVX2
+                                : snow_isa_same();
 }
 
 const char *snow_isa_found(void) {
-    if (has_avx512())
-        return "scalar avx2 avx512";
-    if (has_avx2())
-        return "scalar avx2";
-    return V128 == SNOW_ISA_NEON   ? "scalar neon"
-           : V128 == SNOW_ISA_WASM ? "scalar wasm"
-                                   : "scalar";
+    switch (snow_isa_resolve(SNOW_ISA_AUTO)) {
+    case SNOW_ISA_AVX512:
+        return "scalar sse4 avx2 avx512";
+    case SNOW_ISA_AVX2:
+        return "scalar sse4 avx2";
+    case SNOW_ISA_SSE4:
+        return "scalar sse4";
+    case SNOW_ISA_NEON:
+        return "scalar neon";
+    case SNOW_ISA_WASM:
+        return "scalar wasm";
+    default:
+        return "scalar";
+    }
 }
 
 const char *snow_isa_used(void) {

@@ -6,7 +6,8 @@
  *
  *   scalar   plain C in vectors of 4 floats, which the compiler translates to
  *            SSE2 or NEON; runs on any machine
- *   neon     the same, but shear-warp's tiles by NEON (64-bit ARM)
+ *   sse4     the same, but shear-warp's tiles by SSE4.1 (2008 and later)
+ *   neon     the same by NEON (64-bit ARM)
  *   wasm     the same by WebAssembly's vectors (-msimd128)
  *   avx2     AVX2 and FMA, 8 floats (2013 and later)
  *   avx512   AVX-512 F, BW, VL, DQ, VBMI and VBMI2, 16 floats (2019 and later)
@@ -27,7 +28,7 @@
 #endif
 
 /* The shear-warp's tiles alone: compilers translate the rest well. */
-#if defined(__aarch64__) || defined(__wasm_simd128__)
+#if SNOW_HAS_AVX || defined(__aarch64__) || defined(__wasm_simd128__)
 #define SNOW_HAS_V128 1
 #else
 #define SNOW_HAS_V128 0
@@ -57,5 +58,8 @@ bool snow_isa_runs(snow_isa isa);
 
 /* The instruction set that AUTO means here; others are returned unchanged. */
 snow_isa snow_isa_resolve(snow_isa isa);
+
+/* The fastest one whose pictures have the same bits as those of scalar. */
+snow_isa snow_isa_same(void);
 
 #endif

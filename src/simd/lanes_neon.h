@@ -7,6 +7,8 @@
 
 #include <arm_neon.h>
 
+#define SNOW_V128_TARGET
+
 #define snow_lanes_adds(a, b) (snow_scalar_eighth) vqaddq_s16(a, b)
 #define snow_lanes_subs(a, b) (snow_scalar_eighth) vqsubq_s16(a, b)
 #define snow_lanes_mulhrs(a, b) (snow_scalar_eighth) vqrdmulhq_s16(a, b)

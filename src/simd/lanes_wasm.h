@@ -7,6 +7,8 @@
 
 #include <wasm_simd128.h>
 
+#define SNOW_V128_TARGET
+
 #define SNOW_LANES_OF(name, of)                                                \
     static inline snow_scalar_eighth snow_lanes_##name(snow_scalar_eighth a,   \
                                                        snow_scalar_eighth b) { \

@@ -10,7 +10,7 @@
 #define OF_ISA(isa, name) ((void)(isa), name##_v128)
 #elif SNOW_HAS_V128
 #define OF_ISA(isa, name) \
-    ((isa) == SNOW_ISA_SCALAR ? name##_scalar : name##_v128)
+    ((isa) > SNOW_ISA_AVX512 ? name##_v128 : SNOW_OF_ISA(isa, name))
 #else
 #define OF_ISA SNOW_OF_ISA
 #endif

@@ -1,5 +1,5 @@
-/* splat/shear_warp/splat_v128.c - tiles in NEON or in WebAssembly's vectors;
- * see splat/shear_warp/splat.c. */
+/* splat/shear_warp/splat_v128.c - tiles in SSE4.1, in NEON or in WebAssembly's
+ * vectors; see splat/shear_warp/splat.c. */
 #include "simd/rows.h"
 #include "splat/shear_warp/scratch.h"
 
