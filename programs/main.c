@@ -5,6 +5,7 @@
  * public headers only.  Its exit codes are the library's status values, 7
  * and 130 (options.h). */
 #include "commands/commands.h"
+#include "commands/first.h"
 #include "movie/series.h"
 #include "options/config.h"
 #include "picture/default_name.h"
@@ -97,6 +98,9 @@ static int run_command(command *c) {
     if (done == CONTINUE)
         done = settle_channels(opts, verb->bit & (VERB_RENDER | VERB_TURNTABLE |
                                                   VERB_MOVIE | VERB_SLICE));
+    if (done == CONTINUE &&
+        (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE)))
+        first_settle(opts);
     if (done == CONTINUE)
         done = look_load(opts); /* on every rank: the file is small */
     if (is_for_all(verb))

@@ -113,8 +113,9 @@ static double *read_points(PyObject *given, const char *what, Py_ssize_t width,
 }
 
 static int range_of(const char *name) {
-    static const char *const names[] = {
-        "auto", "full", "values", "percentiles", "robust", "slices", "least"};
+    static const char *const names[] = {"auto",        "full",   "values",
+                                        "percentiles", "robust", "slices",
+                                        "least",       "signal"};
     for (int n = 0; n < (int)(sizeof names / sizeof *names); n++)
         if (strcmp(names[n], name) == 0)
             return n;

@@ -310,17 +310,17 @@ static PyObject *volume_close(PyObject *self, PyObject *nothing) {
 }
 
 /* None for what the file does not say. */
-static PyObject *dict_of_channel(const snow_channel *c) {
+static PyObject *dict_of_channel(const snow_channel *c, bool light) {
     PyObject *color = c->color[0] < 0 ? Py_NewRef(Py_None)
                                       : Py_BuildValue("(ddd)", c->color[0],
                                                       c->color[1], c->color[2]);
     PyObject *window = c->window[0] < c->window[1]
                            ? Py_BuildValue("(dd)", c->window[0], c->window[1])
                            : Py_NewRef(Py_None);
-    PyObject *row =
-        Py_BuildValue("{sO&sOsOsOsO}", "name", text_of, c->name, "color", color,
-                      "window", window, "shown", c->shown ? Py_True : Py_False,
-                      "own", c->own ? Py_True : Py_False);
+    PyObject *row = Py_BuildValue(
+        "{sO&sOsOsOsOsO}", "name", text_of, c->name, "color", color, "window",
+        window, "shown", c->shown ? Py_True : Py_False, "own",
+        c->own ? Py_True : Py_False, "light", light ? Py_True : Py_False);
     Py_XDECREF(color);
     Py_XDECREF(window);
     return row;
@@ -332,7 +332,7 @@ static PyObject *list_of_channels(const snow_volume_info *i) {
     const int64_t count =
         i->channels > 1 || *i->channel[0].name ? i->channels : 0;
     for (int n = 0; list && n < SNOW_CHANNELS_MAX && n < count; n++) {
-        PyObject *one = dict_of_channel(&i->channel[n]);
+        PyObject *one = dict_of_channel(&i->channel[n], i->light >> n & 1);
         if (!one || PyList_Append(list, one))
             Py_CLEAR(list);
         Py_XDECREF(one);
@@ -344,7 +344,7 @@ static PyObject *dict_of_info(const snow_volume_info *i) {
     const double(*m)[4] = i->matrix;
     return Py_BuildValue(
         "{s(LLL)sss(ddd)s((dddd)(dddd)(dddd)(dddd))sdsdsOsO&sssLsLsO&sO&sO"
-        "sO&sO&sO&sdsO&sO&sLsN}",
+        "sO&sO&sO&sdsO&sO&sLsNsssz}",
         "dims", (long long)i->dims[0], (long long)i->dims[1],
         (long long)i->dims[2], "type", snow_type_name(i->type), "spacing",
         i->spacing[0], i->spacing[1], i->spacing[2], "matrix", m[0][0], m[0][1],
@@ -359,7 +359,8 @@ static PyObject *dict_of_info(const snow_volume_info *i) {
         i->description, "time_value", i->time_value, "time_unit", text_of,
         i->time_unit, "calendar", text_of, i->calendar, "channel_count",
         (long long)(i->channels > 1 ? i->channels : 1), "channels",
-        list_of_channels(i));
+        list_of_channels(i), "first_mode", snow_mode_name(snow_mode_for(i)),
+        "first_colormap", snow_colormap_for(i));
 }
 
 static PyObject *volume_info(PyObject *self, void *closure) {

@@ -123,7 +123,7 @@ static void answer_thumbnail(drawing *d, viewer_state *s, outbox *box,
     }
     if (done != CONTINUE)
         return;
-    snow_image_options form = picture_form(&d->opts);
+    snow_image_options form = picture_form(&d->opts, NULL);
     outgoing *made = pack_small(image, &form, false, (int)pane, 0);
     if (made)
         made->client = client;

@@ -15,6 +15,7 @@
 #include "render.h"
 
 #include "commands/commands.h"
+#include "commands/first.h"
 #include "movie/series.h"
 #include "options/config.h"
 #include "run/log.h"
@@ -177,6 +178,8 @@ static int open_all(viewer *v) {
     int done = series_take(opts, verb_of(VERB_SERVE));
     if (done == CONTINUE)
         done = settle_channels(opts, true);
+    if (done == CONTINUE)
+        first_settle(opts);
     if (done == CONTINUE)
         done = look_load(opts); /* on every rank: the file is small */
     json_t *recipe = done == CONTINUE ? first_recipe(opts) : NULL;

@@ -73,12 +73,14 @@ static void hand_over(renderer *r, snow_image *image, snow_overlay *overlay,
         snow_image_free(image);
         return;
     }
-    *made = (picture){.image = image,
-                      .overlay = overlay,
-                      .form = picture_form(&r->drawing->opts),
-                      .revision = r->revision,
-                      .level = level,
-                      .render_us = (uint32_t)(took * 1e6)};
+    *made =
+        (picture){.image = image,
+                  .overlay = overlay,
+                  .form = picture_form(&r->drawing->opts,
+                                       render_state_ground(&r->drawing->state)),
+                  .revision = r->revision,
+                  .level = level,
+                  .render_us = (uint32_t)(took * 1e6)};
     free_pictures(packer_put(r->pack, made));
 }
 

@@ -3,6 +3,7 @@
  * here, and the compiler leaves out what would. */
 #include "combine/exchange.h"
 #include "comm/comm.h"
+#include "movie/movie_files.h"
 #include "parallel/internal.h"
 #include "render/picture.h"
 
@@ -39,4 +40,16 @@ NEVER(bool,
 /* Of no combiner. */
 void snow_combiner_free(snow_combiner *combiner) {
     (void)combiner;
+}
+
+/* A page has one file, and no pattern of several. */
+bool files_are_meant(const char *path) {
+    (void)path;
+    return false;
+}
+
+NEVER(int, steps_find(const options *opts, step_files *out))
+
+void steps_free(step_files *files) {
+    (void)files;
 }

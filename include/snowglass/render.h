@@ -147,6 +147,14 @@ SNOW_API snow_status snow_frame_render_bytes(snow_frame *frame,
     const snow_view *view, const snow_settings *settings,
     const double background[3], unsigned char *pixels, size_t stride);
 
+/* The mode of a first picture: mip for emitted light, PET and thin slabs of MR
+ * and CT, else over; its colour map: grey_r for PET, else NULL. */
+SNOW_API snow_mode snow_mode_for(const snow_volume_info *info);
+SNOW_API const char *snow_colormap_for(const snow_volume_info *info);
+
+/* The automatic background of a mode, red, green and blue: of projections the
+ * lowest colour of the look, black without one. */
+SNOW_API void snow_mode_background(snow_mode, const snow_transfer *, double[3]);
 /* A file (or phantom:NAME) with the default look; view, settings or NULL. */
 SNOW_API snow_status snow_render_file(snow_context *context, const char *path,
     const snow_view *view, const snow_settings *settings, snow_image **image);

@@ -44,7 +44,8 @@ typedef enum snow_range {
     SNOW_RANGE_PERCENTILES, /* low to high, percent of the finite voxels */
     SNOW_RANGE_ROBUST,      /* the file's window, else FULL but far outliers */
     SNOW_RANGE_SLICES,      /* the same of one slice, or of several for all */
-    SNOW_RANGE_LEAST        /* for smallest values: of CT air, else ROBUST */
+    SNOW_RANGE_LEAST,       /* for smallest values: of CT air, else ROBUST */
+    SNOW_RANGE_SIGNAL       /* the file's window, else above the noise */
 } snow_range;
 
 typedef enum snow_domain { /* what the values of control points mean */

@@ -66,6 +66,7 @@ typedef struct snow_volume_info {
     int64_t channels; /* of voxels with several values; else 0 or 1 */
     snow_channel channel[SNOW_CHANNELS_MAX]; /* the first of them */
     bool negative, estimate; /* says the file: high is dark; statistics */
+    uint64_t light; /* bit n: channel n of several is of emitted light */
 } snow_volume_info;
 SNOW_RECORD(snow_volume_info);
 typedef enum snow_endian {   /* byte order of raw data */

@@ -103,11 +103,12 @@ int check_picture(const options *opts) {
     return done == CONTINUE ? check_settings(opts) : done;
 }
 
-snow_image_options picture_form(const options *opts) {
+snow_image_options picture_form(const options *opts,
+                                const snow_transfer *transfer) {
     snow_image_options form = {.size = sizeof form,
                                .bits = options_bits(opts),
                                .overwrite = opts->overwrite};
-    paint_background(opts, &form);
+    paint_background(opts, transfer, &form);
     return form;
 }
 
@@ -115,7 +116,7 @@ snow_image_options picture_form(const options *opts) {
  * the start. */
 int check_picture_paths(snow_context *context, const options *opts) {
     const char *const paths[] = {opts->output, opts->depth, opts->stats};
-    snow_image_options form = picture_form(opts);
+    snow_image_options form = picture_form(opts, NULL);
     int done = check_input_first(opts, paths, sizeof paths / sizeof *paths);
     if (done == CONTINUE)
         done = check_no_folder(opts->output);
@@ -177,7 +178,7 @@ static int show(const work *w, const options *opts) {
                           &colors, &painted);
     const snow_image *image = colors ? colors : w->image;
     if (done == CONTINUE) {
-        snow_image_options form = picture_form(&as_png);
+        snow_image_options form = picture_form(&as_png, render_state_ground(s));
         snow_status status =
             make_annotations(w, &as_png, image, &painted, &overlay);
         form.overlay = overlay;
@@ -192,7 +193,8 @@ static int show(const work *w, const options *opts) {
 /* A pipe is written directly and may block, so an interruption there does not
  * wait. */
 static int write_picture(work *w, const options *opts) {
-    snow_image_options form = picture_form(opts);
+    snow_image_options form =
+        picture_form(opts, render_state_ground(&w->state));
     snow_overlay *overlay = NULL;
     double begin = seconds_now();
     if (!is_special(opts->output))

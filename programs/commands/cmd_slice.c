@@ -112,7 +112,7 @@ static int show_slice(const slice_work *w) {
             done = check_status(w->context, slice_draw(&shown));
     }
     shown.opts.output = "-";
-    snow_image_options form = picture_form(&shown.opts);
+    snow_image_options form = picture_form(&shown.opts, NULL);
     if (done == CONTINUE) {
         snow_status status = slice_make_overlay(&shown, &overlay);
         form.overlay = overlay;
@@ -129,7 +129,7 @@ static int show_slice(const slice_work *w) {
 
 static int write_slice(slice_work *w) {
     const options *opts = &w->opts;
-    snow_image_options form = picture_form(opts);
+    snow_image_options form = picture_form(opts, NULL);
     snow_overlay *overlay = NULL;
     double begin = seconds_now();
     bool shown = opts->show && strcmp(opts->output, "-") == 0;

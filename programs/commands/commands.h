@@ -80,8 +80,10 @@ int open_look(snow_context *context, const options *opts,
 /* Refuses --depth in modes without depth.  Returns CONTINUE or an exit code. */
 int check_depth_mode(const options *opts);
 
-/* The form of the picture file that the options request. */
-snow_image_options picture_form(const options *opts);
+/* The form of the picture file that the options request; the look is NULL where
+ * it is not known yet. */
+snow_image_options picture_form(const options *opts,
+                                const snow_transfer *transfer);
 
 /* Refuses settings that contradict each other, before a volume is read.
  * Returns CONTINUE or an exit code. */

@@ -234,10 +234,15 @@ snow_look look_options(const options *opts) {
      * a few far off. */
     if (mode_is_projection(opts->mode) && !look.preset && !look.base) {
         look.preset = "linear";
-        if (look.range == SNOW_RANGE_AUTO)
-            look.range = strcmp(opts->mode, "minip") == 0
+        if (look.range == SNOW_RANGE_AUTO) {
+            const bool known = opts->usual.kind != SNOW_RANGE_AUTO;
+            look.range = known ? opts->usual.kind
+                         : strcmp(opts->mode, "minip") == 0
                              ? SNOW_RANGE_LEAST
                              : automatic_range(opts);
+            look.low = opts->usual.low;
+            look.high = opts->usual.high;
+        }
     }
     if (opts->opacities.count) {
         look.opacities = opts->opacities.points;

@@ -87,7 +87,7 @@ int movie_open(const options *opts, shot_list *list, movie **out) {
     /* A movie by ffmpeg has no transparency: without a background it is black.
      * Its frames are kept as the encoder gets them. */
     snow_image_options_init(&s->form);
-    paint_background(opts, &s->form);
+    paint_background(opts, NULL, &s->form);
     s->form.flatten |= needs_encoder(s);
     s->form.bits = options_bits(opts);
     s->form.overwrite = true; /* of unfinished files */
@@ -253,8 +253,12 @@ static void hand_over(run *r, int64_t index, snow_image *image) {
     const render_state *state = &r->shots->state;
     const render_report report = render_state_report(state);
     movie_figures_add(&r->figures, &report);
-    if (!r->s->has_annotations) /* the queue's lock shows them to workers */
+    if (!r->s->has_annotations) { /* the queue's lock shows them to workers */
+        const bool flat = r->s->form.flatten;
         r->s->annotations = shots_annotations(r->shots);
+        paint_background(r->opts, render_state_ground(state), &r->s->form);
+        r->s->form.flatten = flat;
+    }
     r->s->has_annotations = true;
     r->s->times[index] = state->drawn.whole.time_value;
     (void)frames_put(r->s->queue, index, image,

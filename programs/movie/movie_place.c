@@ -101,7 +101,7 @@ bool place_aside(const movie_place *place, int64_t index, char *out,
 
 static int check_frame(snow_context *context, const char *path,
                        const options *opts) {
-    snow_image_options form = picture_form(opts);
+    snow_image_options form = picture_form(opts, NULL);
     form.overwrite = true;
     return check_status(context,
                         snow_image_check(context, path, (int)opts->size[0],

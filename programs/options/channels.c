@@ -172,6 +172,8 @@ static const char *usual_color(int n, int count) {
                         : more[n % 8];
 }
 
+#define PALE_BLUE "#4d4dff"
+
 /* A colour that has a name gets it. */
 static void name_color(const double rgb[3], char out[32]) {
     static const char *const names[] = {"",    "blue",    "green",  "cyan",
@@ -203,7 +205,26 @@ void channels_fill(channel_list *list, const snow_volume_info *info,
         else
             snprintf(pick->color, sizeof pick->color, "%.31s",
                      colormap ? colormap : usual_color(n, list->count));
+        if (pick->light && !colormap && strcmp(pick->color, "blue") == 0)
+            strcpy(pick->color, PALE_BLUE);
     }
+}
+
+/* More are no stains but a spectrum, or times. */
+#define MOST_STAINS 16
+
+bool channels_are_light(const channel_list *list,
+                        const snow_volume_info *info) {
+    bool all = list->count > 0, colored = false;
+    for (int n = 0; n < list->count; n++) {
+        const int64_t at = list->picks[n].index;
+        const bool own = at < SNOW_CHANNELS_MAX && info->channel[at].own;
+        all = all && !own &&
+              (!info->light || (at < 64 && (info->light >> at & 1)));
+        colored |= *list->picks[n].color != 0;
+    }
+    return all && (info->light || (colored && info->channels > 1 &&
+                                   info->channels <= MOST_STAINS));
 }
 
 void channels_of_file(const snow_volume_info *info, channel_list *out) {
@@ -219,6 +240,5 @@ void channels_of_file(const snow_volume_info *info, channel_list *out) {
     }
     if (list.count == 1 && list.picks[0].index == 0)
         list.count = 0;
-    channels_fill(&list, info, NULL);
     *out = list;
 }

@@ -11,6 +11,7 @@ typedef struct channel_pick {
     char color[32];    /* #rrggbb, or a colour map; "": the file's */
     range_value range; /* SNOW_RANGE_AUTO: the file's, or chosen */
     double opacity;    /* a factor on opacities */
+    bool light;        /* emitted, of which noise is left out */
 } channel_pick;
 
 typedef struct channel_list {
@@ -31,11 +32,15 @@ bool channels_find(channel_list *list, const snow_volume_info *info,
 /* The list that is read back as these, whose numbers are known. */
 void channels_text(const channel_list *list, char *out, size_t size);
 
+/* Whether all are of emitted light, since the file says so or colours are
+ * given. */
+bool channels_are_light(const channel_list *list, const snow_volume_info *info);
+
 /* All that the file shows; none where that is its first channel as it is. */
 void channels_of_file(const snow_volume_info *info, channel_list *out);
 
 /* Names those without a colour: the file's, else this map unless it is NULL,
- * else a usual one. */
+ * else a usual one.  Of light blue is paler: it is too dark to be seen. */
 void channels_fill(channel_list *list, const snow_volume_info *info,
                    const char *colormap);
 

@@ -275,6 +275,8 @@ char *config_command(const options *opts, const verb_row *verb,
     if (out && snow_context_new(NULL, &context) == SNOW_STATUS_OK) {
         json_t *usual = recipe_tree(context, &recipe);
         json_object_del(usual, "shade"); /* the default depends on the look */
+        if (options_given(opts, "mode")) /* or on the file */
+            json_object_del(usual, "mode");
         if (verb->bit == VERB_SLICE)
             json_object_del(usual, "size"); /* or on the slice */
         write_command(out, opts, verb, tree, usual);

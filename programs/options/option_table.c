@@ -45,8 +45,8 @@ const option_row option_table[] = {
      "pixel for each voxel or, where they are not square, for its shorter side)"},
     {"background", 0, "COLOR|auto|none", TOPIC_OUTPUT, PICTURE, read_color,
      FIELD(background), 0, 0, "background colour of a PNG, WebP, JPEG or movie: a name, #rgb, #rrggbb, "
-     "or r,g,b from 0 to 1; auto, dark: #141414 in modes over and iso, black in "
-     "the others and around slices; or none, transparent, but black in JPEG and movies by ffmpeg "
+     "or r,g,b from 0 to 1; auto: #141414 in modes over and iso, black around "
+     "slices, in the others the colour of the lowest value; or none, transparent, but black in JPEG and movies by ffmpeg "
      "(default auto)"},
     {"bits", 0, "8|16", TOPIC_OUTPUT, FILED, read_choice, FIELD(bits), 0, 0,
      "bits per channel of a PNG (default 8)"},

@@ -81,8 +81,10 @@ typedef struct options {
     snow_context *tf_context; /* that owns it */
     scale_value scale;
     point_list opacities, gradient_opacities;
-    double window[2]; /* width, centre; NaN: not given */
-    range_value range;
+    double window[2];         /* width, centre; NaN: not given */
+    range_value range, usual; /* the latter of projections, where that is open;
+                                 SNOW_RANGE_AUTO: without far outliers */
+    bool slab; /* a projection was chosen, since the volume is a thin slab */
     const char *opacity_unit; /* of a recipe; NULL: not given */
     const char *shade;
     light_value light;

@@ -40,6 +40,16 @@ void channels_note(const options *opts, const snow_volume_info *info,
             (long long)info->channels, why ? "; " : "", why ? why : "");
 }
 
+/* Light that passes through is shown only alone. */
+static void note_others(const options *opts, const snow_volume_info *info) {
+    const bool tells = opts->verbosity >= 0 && process_talks();
+    for (int64_t n = 0; n < info->channels && tells && info->light; n++)
+        if (!(info->light >> n & 1))
+            say("note: channel %lld is of transmitted light and is left out; "
+                "--channel %lld draws it",
+                (long long)n, (long long)n);
+}
+
 int channels_choose(const options *opts, const snow_volume_info *info,
                     const char *why, channel_set *out) {
     const channel_list *asked = &opts->channels;
@@ -84,6 +94,12 @@ int channels_choose(const options *opts, const snow_volume_info *info,
             "taken; --channel 0,%lld shows others",
             (long long)info->channels, SNOW_CHANNELS_MAX,
             (long long)info->channels - 1);
+    if (!asked->count && list.count)
+        note_others(opts, info);
+    const bool light =
+        strcmp(opts->mode, "mip") == 0 && channels_are_light(&list, info);
+    for (int n = 0; n < list.count; n++)
+        list.picks[n].light = light;
     channels_fill(&list, info, opts->colormap);
     out->list = list;
     out->chosen = true;
@@ -154,8 +170,10 @@ static range_value range_of(const options *opts, const snow_channel *of,
         return options_range(opts);
     if (of->window[0] < of->window[1])
         return (range_value){SNOW_RANGE_VALUES, of->window[0], of->window[1]};
-    return (range_value){mode_is_projection(opts->mode) ? automatic_range(opts)
-                                                        : SNOW_RANGE_AUTO,
+    return (range_value){pick->light ? SNOW_RANGE_SIGNAL
+                         : mode_is_projection(opts->mode)
+                             ? automatic_range(opts)
+                             : SNOW_RANGE_AUTO,
                          0, 0};
 }
 
@@ -167,9 +185,9 @@ static snow_status hide_constant(snow_comm *comm, const snow_volume *volume,
     snow_transfer *seen = NULL;
     double low, high;
     snow_transfer_domain(*made, &low, &high);
-    if (low < 0 || low > 0 ||
-        (look->range != SNOW_RANGE_AUTO && look->range != SNOW_RANGE_ROBUST &&
-         look->range != SNOW_RANGE_SLICES))
+    if (low < 0 || low > 0 || look->range == SNOW_RANGE_FULL ||
+        look->range == SNOW_RANGE_VALUES ||
+        look->range == SNOW_RANGE_PERCENTILES)
         return SNOW_STATUS_OK;
     snow_status status =
         snow_ranks_new_transfer(comm, volume, &automatic, &seen);

@@ -7,8 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define DARK (20 / 255.0)
-
 /* Parts of a colour have at least so much room above and below, so that no
  * rounding makes a clear pixel opaque. */
 #define ROOM (1 / 16.0F)
@@ -39,19 +37,17 @@ int paint_check(const options *opts, bool movie) {
                       "give --range LO,HI, or write frames as .npy");
 }
 
-/* Around projections black is expected: it is the colour of their lowest value
- * in most maps.  The dark sides of a shaded object still stand out from a
- * background that is a little lighter.  Both are grey, so that a grey picture
- * stays a grey file. */
-void paint_background(const options *opts, snow_image_options *form) {
+void paint_background(const options *opts, const snow_transfer *transfer,
+                      snow_image_options *form) {
     const color_value *color = &opts->background;
-    bool shaded = !mode_is_projection(opts->mode);
+    const int mode = snow_mode_from_name(opts->mode); /* a slice has none */
     form->flatten =
         color->given || (color->automatic && !keeps_values(opts->output));
-    for (int i = 0; i < 3; i++)
-        form->background[i] = color->given                 ? color->rgb[i]
-                              : color->automatic && shaded ? DARK
-                                                           : 0;
+    memset(form->background, 0, sizeof form->background);
+    if (color->given)
+        memcpy(form->background, color->rgb, sizeof form->background);
+    else if (color->automatic && mode >= 0)
+        snow_mode_background((snow_mode)mode, transfer, form->background);
 }
 
 int paint_copy(const options *opts, snow_context *context,

@@ -18,9 +18,11 @@ typedef struct paint_given {
  * exit code. */
 int paint_check(const options *opts, bool movie);
 
-/* Sets the background of a file: the requested one; by default a dark one in
- * formats that show it, and none in files of values. */
-void paint_background(const options *opts, snow_image_options *form);
+/* Sets the background of a file: the requested one; by default that of the mode
+ * and the look (NULL: not known yet) in formats that show it, and none in files
+ * of values. */
+void paint_background(const options *opts, const snow_transfer *transfer,
+                      snow_image_options *form);
 
 /* Replaces a picture of values by one of colours, unless the output holds
  * values, and makes the lowest value transparent on no background. The look's

@@ -301,7 +301,7 @@ void render_state_choices(const render_state *s, char *out, size_t size) {
                  snow_transfer_description(s->transfer));
     describe_volume(&s->drawn.whole, volume, sizeof volume);
     bool over = s->settings.mode == SNOW_MODE_OVER;
-    snprintf(out, size, "%s: %s; %s%s%s%s%s; view %s; %s%s%smethod %s%s%s",
+    snprintf(out, size, "%s: %s; %s%s%s%s%s; view %s; %s%s%s%smethod %s%s%s",
              name_of_input(s->drawn.path), volume, look, squeeze,
              over ? "; opacity per " : "",
              !over                            ? ""
@@ -310,6 +310,7 @@ void render_state_choices(const render_state *s, char *out, size_t size) {
              over && s->settings.shade == SNOW_SHADE_NONE ? "; not shaded" : "",
              view, over ? "" : "mode ",
              over ? "" : snow_mode_name(s->settings.mode),
+             s->opts->slab ? " for a thin slab (-m over shows its cut)," : "",
              over                        ? ""
              : s->settings.threshold > 0 ? " of all voxels (no threshold), "
                                          : " of all voxels, ",

@@ -83,6 +83,10 @@ int render_state_open(render_state *s, const char *path, int64_t time);
  * shaded, unless shading is requested, or a surface. */
 void render_state_choose_shade(render_state *s);
 
+/* The look that gives the background (paint.h); NULL: light that is added up.
+ */
+const snow_transfer *render_state_ground(const render_state *s);
+
 /* Leaves a strip of the picture to the legend. */
 void render_state_leave_strip(render_state *s);
 

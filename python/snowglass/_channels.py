@@ -28,7 +28,7 @@ OWN = ((0.0, 0.0), (0.04, 0.0), (0.15, 0.25), (1.0, 0.3))
 #: The same of a picture: of one slice, or a few large ones.
 SOLID = ((0.0, 1.0), (0.04, 1.0), (0.15, 1.0), (1.0, 1.0))
 NONE_SAID: Mapping[str, Any] = {"name": "", "color": None, "window": None,
-                                "shown": False, "own": False}
+                                "shown": False, "own": False, "light": False}
 
 Said = Sequence[Mapping[str, Any]]  #: info["channels"]
 
@@ -175,6 +175,15 @@ def of_file(info: Mapping[str, Any]) -> list[int]:
     return [] if shown == [0] else shown
 
 
+def light_of(info: Mapping[str, Any], fields: Mapping[str, Any]
+             ) -> Optional[Mapping[str, Any]]:
+    """What is said of the channel that is open, if it is of emitted light."""
+    given = fields.get("component") or fields.get("channel") or 0
+    rows = info["channels"]
+    number = int(given) if str(given).isdigit() else len(rows)
+    return rows[number] if number < len(rows) and rows[number]["light"] else None
+
+
 def is_read_once(path: Any) -> bool:
     """A pipe or a device, of which no second channel can be read."""
     if os.fspath(path) in ("-", b"-"):
@@ -185,6 +194,11 @@ def is_read_once(path: Any) -> bool:
         return False
     return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
 
+
+#: More are no stains but a spectrum, or times.
+MOST_STAINS = 16
+#: What blue that nobody asked for is: it is too dark to be seen.
+PALE_BLUE = "#4d4dff"
 
 READ_ONCE = "each is read in turn, and this input can be read once"
 
@@ -237,6 +251,18 @@ class Channels:
         self.count, self.first, self.listed = count, first, listed
         self.why, self._open = why, open
         self._opened: dict[int, _snowglass.Volume] = {}
+
+    @property
+    def light(self) -> bool:
+        """Whether all are of emitted light, since the file says so or colours are
+        given."""
+        rows = [self._said(n) for n in range(len(self.picks))]
+        if any(row["own"] for row in rows):
+            return False
+        if any(row["light"] for row in self.said):
+            return all(row["light"] for row in rows)
+        return any(pick.color for pick in self.picks) and \
+            1 < self.count <= MOST_STAINS
 
     def volumes(self, base: Any) -> list[Any]:
         """One for each pick, of which the first may be the Volume itself."""
@@ -301,7 +327,7 @@ class Channels:
             self.warn(why)
             return None
         drawn = [change(volume) for volume in self.volumes(base)]
-        colors = [self._color(n, look) for n in range(len(drawn))]
+        colors = [self._color(n, look, mode) for n in range(len(drawn))]
         return Mixture(
             drawn, [self._transfer(volume, n, color, look, mode) for
                     n, (volume, color) in enumerate(zip(drawn, colors))],
@@ -316,11 +342,16 @@ class Channels:
         number = self.numbers[n]
         return self.said[number] if number < len(self.said) else NONE_SAID
 
-    def _color(self, n: int, look: Look) -> str:
+    def _color(self, n: int, look: Look, mode: str) -> str:
         """Its own, that of the look, of the file, or a usual one."""
         given, said = self.picks[n].color or look.colormap, self._said(n)
         if given is not None:
             return given
+        color = self._usual_color(n, said)
+        pale = color == "blue" and mode == "mip" and self.light
+        return PALE_BLUE if pale else color
+
+    def _usual_color(self, n: int, said: Mapping[str, Any]) -> str:
         if said["color"] is None:
             return USUAL.get(len(self.picks), MORE)[n]
         levels = [math.floor(255 * part + 0.5) for part in said["color"]]
@@ -333,7 +364,8 @@ class Channels:
         flat, said, pick = mode != "over", self._said(n), self.picks[n]
         kind, low, high = _parse_range(
             pick.range or (look.range if is_ranged(look) else said["window"]) or
-            (("slices" if mode == "slice" else "robust") if flat else None))
+            ("signal" if mode == "mip" and self.light else
+             ("slices" if mode == "slice" else "robust") if flat else None))
         fields: dict[str, Any] = {"low": low, "high": high,
                                   **_parse_scale(look.scale)}
         rgb, colors, opacities = _rgb(color), None, None
@@ -349,7 +381,7 @@ class Channels:
                 if said["own"] else None
         made = volume._look(fields, kind, colors, opacities,
                             look.gradient_opacity)
-        if kind in ("auto", "robust", "slices") and made.domain[0] == 0 and \
+        if kind in ("auto", "robust", "slices", "signal") and made.domain[0] == 0 and \
                 "one value only" in volume._look({}, "auto", None, None,
                                                  None).description:
             # nothing to see, as in the command line

@@ -7,7 +7,7 @@ import math
 from dataclasses import replace
 from typing import Any, Callable, Mapping, Optional, Sequence
 
-from . import _recipes, _snowglass
+from . import _first, _recipes, _snowglass
 from ._images import Image
 from ._looks import Look, is_ranged, look_of, shows_window
 from ._volumes import Volume
@@ -89,14 +89,18 @@ class Drawing:
         self.transfer: Any = None
         self.volume_is_new = self.look_is_new = True
         self._data = self._clip = self._style = ""
+        self.mode = "over"
 
     # --- the parts of a recipe ---
 
     def apply(self, recipe: Keys) -> None:
         """Makes the volume and the transfer function of a recipe."""
         self.open(recipe)
-        chosen, mode = self._look_of(recipe), recipe.get("mode") or "over"
+        chosen = self._look_of(recipe)
+        mode = _first.mode(self.volume, chosen, {
+            name.replace("-", "_"): value for name, value in recipe.items()})
         style = repr((chosen, mode))
+        self.mode = mode
         if style != self._style:
             self.transfer = self.volume._transfer(chosen, mode)
             self._style, self.look_is_new = style, True
@@ -156,7 +160,7 @@ class Drawing:
         made = _snowglass.clipped(Volume, self.whole, planes)
         made._planes = planes
         made._axes, made._order = self.whole._axes, self.whole._order
-        made._values = self.whole._values
+        made._values, made._one = self.whole._values, self.whole._one
         if self.whole._mixed is not None:
             made._mixed = self.whole._mixed.mapped(
                 self.whole, lambda each: _snowglass.clipped(
@@ -182,6 +186,7 @@ class Drawing:
                progress: Optional[Callable[[str, float], Any]] = None) -> Image:
         options = self._options(recipe)
         options["size"] = [_shrunk(side, shrink) for side in options["size"]]
+        options.setdefault("mode", self.mode)
         image = self.volume.render(self.transfer, quality=quality,
                                    progress=progress, **options)
         image._ranged = is_ranged(self._look_of(recipe)) or shows_window(
@@ -323,6 +328,7 @@ def begin(volume: Volume, look: Any, options: Mapping[str, Any]
     drawing = Drawing(volume, unsayable)
     if mixed is not None:
         made["channel"] = mixed.first
+        made.setdefault("mode", _first.mode(volume, chosen, options))
         drawing._data = _key(made, DATA)  # it is open
     return drawing, made
 

@@ -87,8 +87,8 @@ class Image(_snowglass.Image):
         all.  PNG, WebP and JPEG show letters and bars; the others hold the
         pixels as they are.
 
-        background    what PNG, WebP and JPEG are laid on: "auto" (dark; black
-                      for projections), "black", "white", "#rrggbb", three
+        background    what PNG, WebP and JPEG are laid on: "auto" (dark; of
+                      projections the lowest value's), "black", "white", "#rrggbb", three
                       numbers 0 to 1; None: transparent
         bits          8 or 16 a channel of PNG
         title         a line of text at the upper left

@@ -168,7 +168,8 @@ def _parse_range(given: Optional[Range]) -> tuple[str, float, float]:
     kind = "values"
     ends: Any = given
     if isinstance(given, str):
-        if given in ("auto", "full", "robust", "slices", "least"):
+        if given in ("auto", "full", "robust", "slices", "least",
+                     "signal"):
             return given, 0.0, 0.0
         words = [word.strip() for word in given.split(",")]
         if all(word.endswith("%") for word in words):

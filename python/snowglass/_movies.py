@@ -6,7 +6,7 @@ import os
 import re
 from typing import Any, Callable, Optional
 
-from . import _checks, _snowglass
+from . import _checks, _first, _snowglass
 from ._images import Color
 from ._looks import is_ranged
 from ._overlays import overlaid
@@ -37,7 +37,7 @@ def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
     frames, fps = _counts(frames, fps)
     start = float(options.pop("azimuth", 0))
     angles = [start + 360 * n / frames for n in range(frames)]
-    mode = options.get("mode") or "over"
+    mode = options["mode"] = _first.mode(volume, look, options)
     if mode == "sum" and not is_ranged(look):
         raise ValueError("mode sum: all frames of a movie need the same range; "
                          "give Look(range=(low, high))")

@@ -8,7 +8,8 @@ import os
 import re
 from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Sequence, Union
 
-from . import _arrays, _channels, _checks, _movies, _overlays, _recipes, _snowglass
+from . import _arrays, _channels, _checks, _first, _movies, _overlays, \
+    _recipes, _snowglass
 from ._images import Image, Path
 from ._looks import Look, colors_are_open, is_ranged, look_of, shows_window
 from ._progress import Progress, progress_of
@@ -95,6 +96,8 @@ class Volume(_snowglass.Volume):
     _planes: Any = None                      # that have cut it
     _frozen: bool = True
     _mixed: Optional[_channels.Channels] = None  # that its pictures mix
+    #: What the file says of its channel of emitted light; None: it is none.
+    _one: Optional[Mapping[str, Any]] = None
 
     @classmethod
     def _open(cls, path: Path, memory: int, progress: Progress,
@@ -123,6 +126,7 @@ class Volume(_snowglass.Volume):
         made._memory, made._planes = memory, clip
         made._mixed = _channels.of_volume(made, path, fields, clip, picks,
                                           numbers)
+        made._one = _channels.light_of(made._info, fields)
         given = {**options, **fields, "mask": options.get("mask")}
         if picks:
             given["channel"] = _channels.text(picks, numbers)
@@ -317,14 +321,15 @@ class Volume(_snowglass.Volume):
                 self, lambda each: _snowglass.masked(_snowglass.Volume, each,
                                                      other, picked))
         made._axes, made._order = self._axes, self._order
-        made._values = self._values
+        made._values, made._one = self._values, self._one
         return made
 
     def look(self, look: Union[Look, str, None] = None) -> str:
         """What a look becomes for this volume, in one line."""
-        mixture = self._mixture(look, "over", {})
+        mode = _first.mode(self, look, {})
+        mixture = self._mixture(look, mode, {})
         return mixture.describe() if mixture else \
-            self._transfer(look).description
+            self._transfer(look, mode).description
 
     def _mixture(self, look: Any, mode: str, settings: Mapping[str, Any]
                  ) -> Optional[_channels.Mixture]:
@@ -340,7 +345,18 @@ class Volume(_snowglass.Volume):
                   ) -> Any:
         if isinstance(look, _snowglass.Transfer):
             return look
-        return self._look(*_chosen(look, mode)._arguments())
+        chosen = _chosen(look, mode)
+        if mode == "mip" and self._one and not is_ranged(look_of(look)) and \
+                chosen.range == "robust":
+            chosen = dataclasses.replace(chosen, range=self._one["window"] or
+                                         "signal")
+        colors = self._info["first_colormap"]
+        if mode == "mip" and colors and look_of(look).preset is None and \
+                chosen.colors is None:
+            chosen = dataclasses.replace(
+                chosen, colormap=chosen.colormap or colors,
+                range="signal" if chosen.range == "robust" else chosen.range)
+        return self._look(*chosen._arguments())
 
     def render(self, look: Union[Look, str, None] = None, *,
                view: Optional[str] = None, size: Union[int, Sequence[int]] = 512,
@@ -402,7 +418,10 @@ class Volume(_snowglass.Volume):
             shade = shade.tolist()
         if isinstance(shade, bool):
             settings["shade"] = "phong" if shade else "none"
-        mode = settings.get("mode") or "over"
+        mode = _first.mode(self, look, {**settings, "overlay": overlay,
+                                        "light": light})
+        if mode != "over":
+            settings["mode"] = mode
         mixture = self._mixture(look, mode, settings)
         first: _snowglass.Volume = mixture.volumes[0] if mixture else self
         transfer = mixture.transfers[0] if mixture else \
@@ -468,7 +487,8 @@ class Volume(_snowglass.Volume):
         image._domain = None if mode == "over" else transfer.domain
         image._ranged = is_ranged(look) or shows_window(mode, transfer)
         image._background = (20 / 255,) * 3 if mode in ("over", "iso") \
-            else (0.0,) * 3
+            else (0.0,) * 3 if "bars" in annotations or mode == "slice" \
+            else transfer.evaluate(transfer.domain[0])[:3]
 
     def _caption(self, title: str = "") -> Optional[str]:
         """Quantity and unit, as a title "quantity (unit)" has them, else of the

@@ -1,6 +1,7 @@
 /* drawing.c - implements drawing.h over the tool's render_state. */
 #include "draw/drawing.h"
 #include "commands/commands.h"
+#include "commands/first.h"
 #include "draw/kept.h"
 #include "draw/mixed.h"
 #include "draw/ranks.h"
@@ -71,6 +72,10 @@ static int make_options(drawing *d, const json_t *given, options *out) {
     drawing_settle_overlay(d, out);
     if (done == CONTINUE)
         done = drawing_settle_channels(out);
+    if (done == CONTINUE && d->state.volume)
+        first_take(out, &d->state.whole);
+    else if (done == CONTINUE)
+        first_settle(out);
     return done == CONTINUE ? check_settings(out) : done;
 }
 

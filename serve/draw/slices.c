@@ -307,7 +307,7 @@ int slices_draw(drawing *d, const slice_asked *asked, snow_image **image,
         snow_image_free(*image);
         *image = NULL;
     }
-    *form = picture_form(&opts);
+    *form = picture_form(&opts, NULL);
     json_decref(tree);
     return done;
 }

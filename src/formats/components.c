@@ -69,9 +69,24 @@ void snow_copy_name(const char *text, char *out, size_t size) {
 
 void snow_channels_begin(snow_volume_info *info, int64_t count, bool shown) {
     info->channels = count;
+    info->light = 0;
     for (int64_t n = 0; n < SNOW_CHANNELS_MAX; n++)
         info->channel[n] = (snow_channel){.color = {-1, -1, -1},
                                           .shown = n < count && (shown || !n)};
+}
+
+/* More are no stains but a spectrum, or times. */
+#define MOST_STAINS 16
+
+void snow_channels_are_light(snow_volume_info *info, uint64_t through) {
+    bool any = false;
+    if (info->channels < 2 || info->channels > MOST_STAINS)
+        return;
+    info->light = ((UINT64_C(1) << info->channels) - 1) & ~through;
+    for (int n = 0; n < SNOW_CHANNELS_MAX && n < info->channels; n++)
+        any |= info->light >> n & 1 && info->channel[n].shown;
+    for (int n = 0; n < SNOW_CHANNELS_MAX && n < info->channels; n++)
+        info->channel[n].shown &= any ? info->light >> n & 1 : !n;
 }
 
 /* Levels are those of a screen: 0 to the largest, of floats 1. */

@@ -1,6 +1,10 @@
 /* render/settings.c - the settings of a picture: their names and defaults.
  * settings_resolve.c finds what they mean for one volume. */
 #include "base/base.h"
+#include "transfer/look.h"
+#include "volume/volume.h"
+
+#include <string.h>
 
 static const char *const methods[] = {
     [SNOW_METHOD_AUTO] = "auto",
@@ -69,6 +73,53 @@ const char *snow_mode_name(snow_mode mode) {
 
 int snow_mode_from_name(const char *name) {
     return find_name(modes, COUNT(modes), name);
+}
+
+/* A few slices of a scan, whose surface is a cut: nothing but its projection
+ * shows what is in it.  Whole numbers of a file that names no modality may be
+ * labels, which are not projected. */
+static bool is_slab_of_scan(const snow_volume_info *info) {
+    const int thin = snow_volume_thin_axis(info);
+    const bool scan =
+        strcmp(info->modality, "MR") == 0 || strcmp(info->modality, "CT") == 0;
+    const bool fractions =
+        !*info->modality && !info->whole && info->type >= SNOW_TYPE_FLOAT32;
+    return info->medical && (scan || fractions) && !info->estimate &&
+           info->channels <= 1 && thin >= 0 && info->dims[thin] > 1;
+}
+
+snow_mode snow_mode_for(const snow_volume_info *given) {
+    snow_volume_info info;
+    const bool known = SNOW_RECORD_READ(NULL, snow_volume_info, given, &info) ==
+                       SNOW_STATUS_OK;
+    return known && (info.light || snow_is_pet(&info) || is_slab_of_scan(&info))
+               ? SNOW_MODE_MIP
+               : SNOW_MODE_OVER;
+}
+
+const char *snow_colormap_for(const snow_volume_info *given) {
+    snow_volume_info info;
+    const bool known = SNOW_RECORD_READ(NULL, snow_volume_info, given, &info) ==
+                       SNOW_STATUS_OK;
+    return known && snow_is_pet(&info) ? "grey_r" : NULL;
+}
+
+#define DARK (20 / 255.0)
+
+/* A projection has its lowest value where it meets next to nothing.  The dark
+ * sides of a shaded object still stand out from a background that is a little
+ * lighter than black.  Both are grey where the picture is, so that it stays a
+ * grey file. */
+void snow_mode_background(snow_mode mode, const snow_transfer *transfer,
+                          double rgb[3]) {
+    const bool shaded = mode == SNOW_MODE_OVER || mode == SNOW_MODE_ISO;
+    double ends[2], low[4] = {0};
+    if (transfer && !shaded) {
+        snow_transfer_domain(transfer, &ends[0], &ends[1]);
+        snow_transfer_evaluate(transfer, ends[0], low);
+    }
+    for (int i = 0; i < 3; i++)
+        rgb[i] = shaded ? DARK : low[i];
 }
 
 static const snow_settings defaults = {

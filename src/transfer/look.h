@@ -207,6 +207,14 @@ snow_status snow_robust_range(const snow_histogram *histogram, snow_range range,
                               double *low, double *high,
                               snow_transfer_builder *builder);
 
+/* Slices of a PET; a picture that was made of them has one. */
+bool snow_is_pet(const snow_volume_info *info);
+
+/* The same, but of the values above the noise of a background; of a PET from 0
+ * to all but its highest. */
+snow_status snow_signal_range(const snow_histogram *histogram, double *low,
+                              double *high, snow_transfer_builder *builder);
+
 /* The low end of a range; of CT at least -1024, since padding is lower. */
 double snow_hounsfield_floor(const snow_histogram *histogram, double low);
 

@@ -77,6 +77,8 @@ static snow_status resolve_range(const snow_histogram *histogram,
         *low = look->low;
         *high = look->high;
     }
+    if (look->range == SNOW_RANGE_SIGNAL)
+        return snow_signal_range(histogram, low, high, builder);
     if (look->range >= SNOW_RANGE_ROBUST)
         return snow_robust_range(histogram, look->range, low, high, builder);
     if (look->range != SNOW_RANGE_PERCENTILES || !histogram->finite)

@@ -33,8 +33,8 @@ END_PYTHON
 
 list=(--channel 0:red:20..200,1:#20ff40:0.7,2:blue:p1..p99.9)
 many=(render c.npy "${list[@]}" -s 80x70)
-as_one "over" 3 1/255 "${many[@]}" --azimuth 33
-run 0 "one channel" "$TOOL" render c.npy -s 80x70 -q --azimuth 33 \
+as_one "over" 3 1/255 "${many[@]}" -m over --azimuth 33
+run 0 "one channel" "$TOOL" render c.npy -s 80x70 -q -m over --azimuth 33 \
     --channel 1:green -y -o lone.npy
 check "is another picture" [ -n "$(cmp one.npy lone.npy)" ]
 as_one "a plane, from an eye" 2 1/255 "${many[@]}" --clip 1,0.5,0,30 \
@@ -54,7 +54,7 @@ says "$(grep -o 'channels 0 red 20..200, 1 #20ff40 [^;]*' "$ERR" | head -1)"
 
 # Ranks that have no room for their parts leave them in the file.
 WAY="--memory 7M" as_one "a large one with little memory" 2 1/255 \
-    render big.npy "${list[@]}" -s 60x50 --azimuth 20
+    render big.npy "${list[@]}" -s 60x50 -m over --azimuth 20
 
 frames_as_one "a movie" 3 movie c.npy -m mip "${list[@]}"
 finish

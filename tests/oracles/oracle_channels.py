@@ -1,6 +1,7 @@
 """Channels of OME-TIFF, ImageJ, OME-Zarr and NIfTI: what info says of them, and
 slices and projections beside NumPy's own sums of light."""
 import gzip
+import re
 
 import oracle
 from oracle import np
@@ -69,8 +70,9 @@ def expect_pictures(path, windows, colors, name, listed):
         expect_light(got, light(CZYX[:, 4], windows, colors), f"{name} slice",
                      LEVEL)
         got = draw("render", path, "-m", "mip", "--size", "44x36", *options)
+        one_by_one = spec if options else spec.replace("#0000ff", "#4d4dff")
         parts = [draw("render", path, "-m", "mip", "--size", "44x36",
-                      "--channel", one) for one in spec.split(",")]
+                      "--channel", one) for one in one_by_one.split(",")]
         expect_light(got, np.minimum(sum(parts), 1), f"{name} projection",
                      3 * LEVEL)
         if not (got.max((0, 1)) > 0.3).all():
@@ -146,5 +148,57 @@ for kind, packed in (("RGB-color", False), ("vector", True)):
                 [True] * 3)
     got = draw("slice", "rgb.nrrd", "--axis", "z", "--at", "4")
     expect_light(got[::-1], RGB[4] / 255, f"NRRD in colour, {kind}", LEVEL)
+
+
+# --- emitted light: maximum projections above the noise, added ------------------
+
+
+def signal(values):
+    """The range of a channel: mode and spread of its background, by NumPy."""
+    v = values.ravel().astype(float)
+    low, high = np.percentile(v, [0.1, 99.9])
+    counts, edges = np.histogram(v, 256, (low, high))
+    at = np.convolve(counts, np.ones(5), "same").argmax()
+    mode = (edges[at] + edges[at + 1]) / 2
+    spread = 1.4826 * np.median(mode - v[v <= mode])
+    low = mode + 3 * spread if mode - low <= (high - low) / 4 else \
+        np.percentile(v, 1)
+    return low, np.percentile(v[v > low], 99.9)
+
+
+def expect_projection(path, data, colors, name):
+    """One pixel a voxel along z; the ranges are those that the tool prints."""
+    oracle.checked += 1
+    _, nz, ny, nx = data.shape
+    zoom = np.sqrt(nx * nx + ny * ny + nz * nz) / min(nx, ny)
+    done = oracle.tool("render", path, "-o", "out.png", "-y", "--no-labels", "-s",
+                       f"{nx}x{ny}", "--fit", "volume", "--zoom", zoom)
+    said = re.findall(r" (-?[\d.]+)\.\.([\d.]+)", done.stderr)
+    windows = [tuple(map(float, each)) for each in said]
+    if "mode mip" not in done.stderr or len(windows) != len(data):
+        oracle.fail(name, done.stderr)
+        return
+    for window, each in zip(windows, data):
+        if not np.allclose(window, signal(each), rtol=0.01, atol=1):
+            oracle.fail(name, f"{window} is not {signal(each)}")
+    got = np.asarray(Image.open("out.png").convert("RGB")) / 255
+    expect_light(got, light(data.max(1), windows, colors), name, 1 / 255)
+
+
+PALE = (0x4d / 255, 0x4d / 255, 1)
+noise = random.normal(100, 10, (3, 12, 40, 50))
+noise[0, 3:6, 20:24, 10:20] += 2500
+noise[1, :, :30, :40] += np.linspace(0, 900, 40)
+noise[2] = random.normal(900, 200, noise[2].shape)  # dense: the mode is the signal
+noise = np.clip(noise, 0, 65535).astype(np.uint16)
+AXES = {"axes": "CZYX", "PhysicalSizeX": 1, "PhysicalSizeY": 1, "PhysicalSizeZ": 1}
+tifffile.imwrite("light.ome.tif", noise, metadata=AXES)
+expect_projection("light.ome.tif", noise, [(1, 0, 0), (0, 1, 0), PALE], "light")
+for words in ({"ContrastMethod": ["Fluorescence", "Fluorescence", "DIC"]},
+              {"IlluminationType": ["Epifluorescence", "Epifluorescence",
+                                    "Transmitted"]}):
+    tifffile.imwrite("through.ome.tif", noise, metadata={**AXES, "Channel": words})
+    expect_projection("through.ome.tif", noise[:2], [(1, 0, 1), (0, 1, 0)],
+                      f"light beside {words}")
 
 oracle.finish()

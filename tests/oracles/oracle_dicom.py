@@ -750,4 +750,18 @@ for name, dtype in (("ct_abdomen_20of275", "u2"), ("mr_fse_brain_19", "f4")):
         (folder,) = glob.glob(f"{name}/*/")
         voxels, matrix = volume([opened(p) for p in glob.glob(f"{folder}/*")])
         oracle.expect(folder, voxels, matrix, dtype=dtype, unit="mm")
+# PET opens as a projection on white, from 0 on; thin slabs of scans as one from
+# their face.
+dose = np.random.default_rng(2).integers(0, 900, (6, 9, 8)).astype("u2")
+top = np.percentile(dose, 99.9, method="inverted_cdf")
+FACE = "view inferior; mode mip for a thin slab "
+for modality, step, words in (("PT", 2, f"grey_r 0..{top}"), ("NM", 2, ""),
+                              ("MR", 0.1, FACE), ("CT", 0.1, FACE),
+                              ("NM", 0.1, ""), ("MR", 2, "")):
+    oracle.checked += 1
+    folder = f"looks_{modality}_{step}"
+    series(folder, dose, [(0, 0, step * n) for n in range(6)], Modality=modality)
+    said = oracle.tool("render", folder, "-o", "look.png", "-y", "-s", "60").stderr
+    if ("mode mip" in said and words in said) != bool(words):
+        oracle.fail(f"a picture of {modality}", said)
 oracle.finish()

@@ -233,7 +233,7 @@ class Arrays(InFolder):
     def test_the_picture_is_that_of_their_file(self):
         names = ["DAPI", "GFP", "far red"]
         ome_tiff("ome.tif", ARRAYS, NAMED)
-        file = sg.Volume("ome.tif")
+        file = sg.Volume("ome.tif", channel="0:blue,1:#00ff00,2:red")
         drawn = [file.render(size=80).checksum,
                  file.render(size=80, mode="mip").checksum,
                  file.slice("z").checksum]

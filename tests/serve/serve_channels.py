@@ -31,7 +31,7 @@ def numbers(look):
 def too_large():
     """In memory for one channel, the first is drawn, and the command says so; also
     after a picture that took more memory, or had no room."""
-    with viewer("told.zarr", "-q", "-j", "2", "--memory", "6M") as page:
+    with viewer("told.zarr", "-q", "-j", "2", "--memory", "6M", "-m", "over") as page:
         for n, size in enumerate(([400, 300], [900, 700]), 1):
             page.set(n, size=size)
             if n == 1:
@@ -83,7 +83,7 @@ def switched(name, *options, clip=None):
         look = look_of(page, lambda look: True)
         check("all are drawn", numbers(look) == [0, 1, 2], look["channels"])
         check("in their colours", [one[3] for one in look["channels"]] ==
-              ["#0000ff", "#00ff00", "#ff8000"], look["channels"])
+              ["#4d4dff", "#00ff00", "#ff8000"], look["channels"])
         spec = ["%d:%s:%r..%r" % (one[0], one[2], one[4], one[5])
                 for one in look["channels"]]
         every = is_of_command(page, "all", 1, size=[96, 80])
@@ -114,9 +114,9 @@ def switched(name, *options, clip=None):
                               channel=spec[1])
         check("are four", len({alone, first, green, every}) == 4)
         is_of_command(page, "all again", 13, channel=",".join(spec))
-        projected = is_of_command(page, "and projected", 14, mode="mip")
+        composited = is_of_command(page, "and composited", 14, mode="over")
         slice_is_of_command(page, "its slice", axis="x", index=12, colored=True)
-        check("is another", projected not in (every, green))
+        check("is another", composited not in (every, green))
         page.set(15, mode="mean")
         look = look_of(page, lambda look: len(look["channels"]) == 1)
         check("a mode of one channel draws the first", numbers(look) == [0],

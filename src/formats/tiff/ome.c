@@ -76,8 +76,25 @@ static void take_pixels(ome_text *t, const char **attributes) {
         strchr(order, 'C') && strchr(order, 'Z') && strchr(order, 'T'))
         memcpy(shape->order, order, sizeof shape->order);
     take_spacing(attributes, shape);
-    t->pixels = t->done = true;
+    shape->ome = t->pixels = t->done = true;
     t->out->taken = t->number - 1;
+}
+
+static bool is_among(const char *text, const char *const *words) {
+    while (text && *words && strcmp(text, *words) != 0)
+        words++;
+    return text && *words;
+}
+
+/* Whether its light passes through, rather than being emitted. */
+static bool passes_through(const char **attributes) {
+    static const char *const contrasts[] = {"Brightfield", "Phase", "DIC",
+                                            NULL};
+    static const char *const lights[] = {"Transmitted", NULL};
+    return is_among(snow_index_attribute(attributes, "ContrastMethod"),
+                    contrasts) ||
+           is_among(snow_index_attribute(attributes, "IlluminationType"),
+                    lights);
 }
 
 /* A colour is red, green, blue and alpha, the bytes of a number with a sign. */
@@ -87,6 +104,8 @@ static void take_channel(ome_text *t, const char **attributes) {
     int64_t rgba;
     if (t->channels == SNOW_CHANNELS_MAX)
         return;
+    t->out->shape.through |= (uint64_t)passes_through(attributes)
+                             << t->channels;
     snow_channel *out = &t->out->shape.channel[t->channels++];
     if (name)
         snow_copy_name(name, out->name, sizeof out->name);

@@ -120,6 +120,8 @@ static void describe_channels(const tiff_plan *plan, snow_volume_info *info) {
     else if (plan->channels == 1 && shape->opacity && samples > 1 &&
              samples <= SNOW_CHANNELS_MAX)
         info->channel[samples - 1].shown = false;
+    if ((shape->ome || shape->imagej) && !shape->colors)
+        snow_channels_are_light(info, shape->through);
 }
 
 /* Where one page is followed by all planes, as ImageJ writes more than 4 GB and

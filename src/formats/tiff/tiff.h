@@ -29,6 +29,8 @@ typedef struct tiff_shape {
     double nodata; /* the value of missing voxels; NaN: none */
     snow_channel channel[SNOW_CHANNELS_MAX];
     bool colors, opacity; /* of samples of a pixel: they are; the last is */
+    bool ome;
+    uint64_t through; /* bit n: light passes through, says OME of channel n */
 } tiff_shape;
 
 /* Reads the text of the ImageDescription, which may be NULL. */

@@ -199,6 +199,8 @@ void snow_zarr_describe_channels(const zarr_found *found, int64_t count,
     for (int n = 0; n < SNOW_CHANNELS_MAX && n < count; n++)
         any |= info->channel[n].shown;
     info->channel[0].shown |= !any;
+    if (found->image)
+        snow_channels_are_light(info, 0);
 }
 
 /* --- transformations ------------------------------------------------------ */

@@ -70,4 +70,9 @@ one picture | ct.nrrd | 0 | mr.nrrd
 but one is in HU | ct.nrrd --legend | != | mr.nrrd --legend
 END
 done
+# The background of a projection is the colour of its lowest value.
+pairs png render phantom:head --dims 40x40x40 -s 90x80 <<'END'
+a map that begins with white | -m mip -c grey_r | = | -m mip -c grey_r --background '#ffffff'
+of values | -m mean -c viridis | = | -m mean -c viridis --background '#440154'
+END
 finish

@@ -96,9 +96,10 @@ sed 's/=liver/=spleen/' liver.nrrd >spleen.nrrd
 "$TOOL" convert ome.tif --channel 2 -q -o third.nrrd
 symlog="ome.tif --scale symlog:5 --channel" edges="ome.tif --gradient-opacity 0:0,200:1 --channel"
 pairs npy render -s 60x50 <<END
-listed | ome.tif | = | ome.tif --channel 0:blue,gfp:green,2:red
-with other threads | " | = | ome.tif -j 5
-in another order | " | 1e-5 | ome.tif --channel 2:red,0:blue,1:green
+listed | ome.tif | = | ome.tif --channel 0:#4d4dff,gfp:green,2:red
+composited | ome.tif -m over | = | ome.tif --channel 0:blue,gfp:green,2:red -m over
+with other threads | ome.tif | = | ome.tif -j 5
+in another order | " | 1e-5 | ome.tif --channel 2:red,0:#4d4dff,1:green
 in plain C | " | 1e-4 | ome.tif --isa scalar
 beside an overlay | " | != | ome.tif --overlay third.nrrd --overlay-look 100:0,200:1
 one, by its number | ome.tif --channel GFP | = | ome.tif --channel 1
@@ -116,8 +117,8 @@ assert grey[0] == grey[1] == grey[2] > 10, grey
 assert green[0] == green[2] == 0 and green[1] > 10, green
 assert red[1] == red[2] == 0 and red[0] > 10, red'
 told "all" 'channels 0 DAPI blue [0-9.]+, 1 GFP green [0-9.]+, 2 far red red [0-9.]+; .*not shaded' \
-    picture ome.tif -o all.png
-run 0 "rays" render ome.tif -o rays.png --method raycast
+    picture ome.tif -o all.png -m over
+run 0 "rays" render ome.tif -o rays.png --method raycast -m over
 run 0 "are near" "$TOOL" compare all.png rays.png --tolerance 0.8
 check "within 28 dB" python3 -c 'import sys
 assert float([l.split()[1] for l in open(sys.argv[1]) if "psnr" in l][0]) > 28' "$OUT"
@@ -130,9 +131,12 @@ done
 while IFS='|' read -r words pattern; do
     told "$words" "channels $pattern" picture -o told.png -y $words
 done <<'END'
-two.tif|0 magenta .*, 1 green 
-plain.tif|0 red .*, 1 green .*, 2 blue 
-plain.tif --range 30,180|0 red 30..180, 1 green 30..180, 2 blue 30..180
+two.tif|0 magenta .*, 1 green .*; mode mip 
+two.tif -m over|0 magenta .*, 1 green .*; opacity per voxel
+two.tif --shade phong|0 magenta .*, 1 green .*; opacity per voxel
+plain.tif|0 red .*, 1 green .*, 2 #4d4dff 
+plain.tif -m over|0 red .*, 1 green .*, 2 blue 
+plain.tif --range 30,180|0 red 30..180, 1 green 30..180, 2 #4d4dff 30..180
 ten.tif --channel 9:red,8:green|9 red [0-9.]+, 8 green [0-9.]+; 
 rgb.nii|0 red 0..255, 1 green 0..255, 2 blue 0..255
 END
@@ -193,7 +197,7 @@ run 0 "a movie of many" "$TOOL" movie steps.tif -o o_%d.png -s 128x128 --legend 
 check "says what its legend lacks" [ "$(grep -c 'note: .*no room .* of channel 1$' "$ERR")" = 1 ]
 run 0 "a movie of a list" "$TOOL" movie steps.tif -o l_%d.npy -q -s 60x50 --channel 1:green,0:magenta
 run 0 "in another order" "$TOOL" compare m_0.npy l_0.npy --tolerance 1e-5
-told "a movie of maxima" 'channels 0 magenta 20..206, 1 green 20..206' \
+told "a movie of maxima" 'channels 0 magenta 28.9162..206, 1 green 29.4058..206' \
     "$TOOL" movie steps.tif -o p_%d.npy -s 60x50 -m mip
 cp p_1.npy kept.npy && rm p_1.npy
 run 0 "that is resumed" "$TOOL" movie steps.tif -o p_%d.npy -q -s 60x50 -m mip --resume
@@ -202,15 +206,15 @@ same_file "is the same" p_1.npy kept.npy
 # --- more than the memory -------------------------------------------------------
 told "more than the memory" \
     'note: channel 0 of 4 .*several need 3.9 MiB of memory, over the 3.0 MiB of --memory$' \
-    picture big.tif -o big.npy --memory 3M
+    picture big.tif -o big.npy --memory 3M -m over
 told "beside what is made of them" 'note: channel 0 of 4 .*several need more memory$' \
-    picture big.tif -o big2.npy -j 2 --memory 5M
-run 0 "the first" render big.tif -o big3.npy --channel 0
+    picture big.tif -o big2.npy -j 2 --memory 5M -m over
+run 0 "the first" render big.tif -o big3.npy --channel 0 -m over
 same_file "is drawn as ever" big.npy big3.npy
 same_file "beside others, too" big2.npy big3.npy
 refused 5 "a list of more" 'channel: several need 1.9 MiB of memory, over the 1.5 MiB of --memory; give one' \
     "$TOOL" render big.tif -o z.png -s 40x40 --memory 1500K --channel 1,2
-for way in "" "-m mip" "--azimuth 40 --channel 0:red:0.3,2:green:p1..p99"; do
+for way in "-m over" "-m mip" "-m over --azimuth 40 --channel 0:red:0.3,2:green:p1..p99"; do
     run 0 "several in memory $way" render large.tif -o whole.npy -j 2 $way
     told "in slabs" 'large.tif: stays in its file' \
         picture large.tif -o slabs.npy -v -j 2 --memory 7M $way
@@ -218,8 +222,8 @@ for way in "" "-m mip" "--azimuth 40 --channel 0:red:0.3,2:green:p1..p99"; do
     same_file "the same bits" whole.npy slabs.npy
 done
 told "a list of one in slabs" 'stays in its file' \
-    picture big.tif -v -o slabs.npy -j 1 --memory 3M --channel 1:green
-run 0 "and in memory" render big.tif -o whole.npy --channel 1:green
+    picture big.tif -v -o slabs.npy -j 1 --memory 3M --channel 1:green -m over
+run 0 "and in memory" render big.tif -o whole.npy --channel 1:green -m over
 same_file "is the same" slabs.npy whole.npy
 told "a slice of more" 'channels 0 cyan .*, 3 red ' "$TOOL" slice big.tif -o big4.png --memory 3M
 

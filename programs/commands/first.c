@@ -1,0 +1,92 @@
+/* first.c - see first.h. */
+#include "commands/first.h"
+#include "commands/commands.h"
+#include "movie/movie_files.h"
+
+#include <string.h>
+
+/* Whether options are of a mode, or of opacities, surfaces and light, which are
+ * of mode over.  Recipes have all keys, so that values count. */
+static bool is_decided(const options *opts) {
+    const bool opaque = opts->preset || opts->tf || opts->opacities.count ||
+                        opts->gradient_opacities.count || opts->labels ||
+                        opts->overlay || opts->threshold > 0;
+    const bool lit = options_given(opts, "shade") ||
+                     options_typed(opts, "light") || opts->depth ||
+                     opts->depth_darkening > 0 || opts->occlusion > 0;
+    return options_given(opts, "mode") || opaque || lit ||
+           strcmp(opts->method, "original") == 0 ||
+           strcmp(opts->method, "footprint") == 0 ||
+           strcmp(opts->kernel, "gauss") == 0 ||
+           strcmp(opts->kernel, "box") == 0;
+}
+
+static bool is_open(const options *opts) {
+    return opts->operand_count > 0 && strcmp(opts->operands[0], "-") != 0 &&
+           (strcmp(opts->mode, "mip") == 0 || !is_decided(opts));
+}
+
+/* The channel that is drawn alone; a component may be one. */
+static int64_t number_of_one(const options *opts) {
+    int64_t number = opts->channel;
+    if (opts->component && !value_integer(opts->component, &number))
+        number = -1;
+    return number;
+}
+
+/* The channels of light among those that are to be drawn. */
+static uint64_t light_of(const options *opts, const snow_volume_info *info) {
+    const channel_list *list = &opts->channels;
+    const int64_t one = number_of_one(opts);
+    if (list->count)
+        return channels_are_light(list, info) ? 1 : 0;
+    if (!opts->component && !options_given(opts, "channel"))
+        return info->light;
+    return one >= 0 && one < 64 ? info->light >> one & 1 : 0;
+}
+
+/* The file's, or that of what is above the noise. */
+static range_value range_of_one(const options *opts,
+                                const snow_volume_info *info) {
+    const int64_t one = number_of_one(opts);
+    const double *window =
+        one < SNOW_CHANNELS_MAX ? info->channel[one].window : info->window;
+    if (window[0] < window[1])
+        return (range_value){SNOW_RANGE_VALUES, window[0], window[1]};
+    return (range_value){SNOW_RANGE_SIGNAL, 0, 0};
+}
+
+void first_take(options *opts, const snow_volume_info *info) {
+    snow_volume_info seen = *info;
+    seen.light = light_of(opts, info);
+    const snow_mode mode = snow_mode_for(&seen);
+    const char *map = snow_colormap_for(&seen);
+    if (!is_decided(opts) && mode != SNOW_MODE_OVER) {
+        options_take(opts, verb_of(VERB_RENDER), "mode", snow_mode_name(mode));
+        opts->slab = !seen.light && !map;
+    }
+    if (mode != SNOW_MODE_MIP || strcmp(opts->mode, "mip") != 0)
+        return;
+    if (seen.light)
+        opts->usual = range_of_one(opts, info);
+    else if (map)
+        opts->usual = (range_value){SNOW_RANGE_SIGNAL, 0, 0};
+    if (!seen.light && !opts->colormap && !opts->preset && !opts->tf)
+        opts->colormap = map;
+}
+
+void first_settle(options *opts) {
+    snow_context *context = NULL; /* whose warnings come again */
+    snow_volume_info info = {.size = sizeof info};
+    step_files files = {.gaps = true};
+    const snow_volume_options data = data_options(opts);
+    if (!is_open(opts) || snow_context_new(NULL, &context) != SNOW_STATUS_OK)
+        return;
+    const char *path = opts->operands[0];
+    if (files_are_meant(path) && steps_find(opts, &files) == CONTINUE)
+        path = files.paths[0];
+    if (snow_volume_inspect(context, path, &data, &info) == SNOW_STATUS_OK)
+        first_take(opts, &info);
+    steps_free(&files);
+    snow_context_free(context);
+}
