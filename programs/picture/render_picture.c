@@ -280,6 +280,10 @@ static void describe_squeeze(const render_state *s, char out[160]) {
              low, high);
 }
 
+const snow_transfer *render_state_ground(const render_state *s) {
+    return s->channels.list.count ? NULL : s->transfer;
+}
+
 void render_state_choices(const render_state *s, char *out, size_t size) {
     const double *from = s->opts->position.at;
     const char *view = s->opts->view

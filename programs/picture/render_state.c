@@ -144,10 +144,6 @@ void render_state_choose_shade(render_state *s) {
         s->settings.shade = SNOW_SHADE_NONE;
 }
 
-const snow_transfer *render_state_ground(const render_state *s) {
-    return s->channels.list.count ? NULL : s->transfer;
-}
-
 /* Opens the volume in memory or in its file. */
 static int open_as_planned(render_state *s, const options *step) {
     if (!s->plan.streams)
