@@ -12,6 +12,7 @@
 #define SNOW_CLASSIFY_H
 
 #include "classify/gradient_opacity.h"
+#include "transform/clip.h"
 
 typedef struct snow_row_block {
     int64_t slice, first_row, rows;
@@ -129,6 +130,7 @@ typedef struct snow_lights {
 typedef struct snow_shader {
     const snow_volume *volume;
     const snow_placement *placement;
+    snow_viewer eye;
     double ambient, diffuse, specular, shininess;
     snow_isa isa; /* resolved; all instruction sets give the same bits */
     int whole;    /* shininess if it is a whole number up to 1024, else -1 */
@@ -164,11 +166,13 @@ void snow_shade_row_block(const snow_shader *shader, int channels,
                           snow_row_block *row_block);
 
 /* The same for `count` consecutive samples with given gradients in index space,
- * at most SNOW_SHADE_BLOCK. All of them must be numbers. */
+ * at most SNOW_SHADE_BLOCK. All of them must be numbers.  `flat`: how much of
+ * the light of each is that of cut faces; NULL: none. */
 #define SNOW_SHADE_BLOCK 128
 void snow_shade_gradients(const snow_shader *shader,
                           const double gradients[3][SNOW_SHADE_BLOCK],
-                          int count, int channels, float *samples);
+                          const float *flat, int count, int channels,
+                          float *samples);
 
 /* --- perspective: path_length.c ------------------------------------------- */
 

@@ -5,6 +5,7 @@
  * monotone. */
 #include "transform/clip.h"
 
+#include "base/vec3.h"
 #include "volume/volume.h"
 
 #include <math.h>
@@ -96,4 +97,23 @@ void snow_clip_viewer(const snow_placement *p, snow_viewer *out) {
         out->along[axes[n]] = along[n];
         out->eye[axes[n]] = p->eye.at[n];
     }
+}
+
+/* --- cut faces ------------------------------------------------------------ */
+
+bool snow_clip_is_seen(const double plane[4], const snow_viewer *viewer) {
+    return viewer->perspective ? snow_dot(plane, viewer->eye) > plane[3]
+                               : snow_dot(plane, viewer->along) < 0;
+}
+
+float snow_clip_flatness(const snow_clip_planes *clip,
+                         const snow_viewer *viewer, const double at[3]) {
+    double flat = 0;
+    for (size_t n = 0; clip && n < clip->plane_count; n++) {
+        const double *plane = clip->planes[n];
+        double depth = (plane[3] - snow_dot(plane, at)) / snow_length(plane);
+        if (snow_clip_is_seen(plane, viewer))
+            flat = fmax(flat, 2 - depth / SNOW_FLAT_DEPTH);
+    }
+    return (float)fmin(flat, 1);
 }

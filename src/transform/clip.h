@@ -17,6 +17,7 @@
 #include "decompose/order.h"
 #include "transform/shear.h"
 #include "transform/shear_perspective.h"
+#include "volume/clip_planes.h"
 
 /* Along u, v and the slice axis of a placement, in voxels of the whole. */
 typedef struct snow_clip {
@@ -46,5 +47,19 @@ void snow_clip_pixels(const snow_clip *clip, const snow_placement *whole,
  * same numbers as above, so that rounding cannot make a ray alternate between
  * two parts. */
 void snow_clip_viewer(const snow_placement *whole, snow_viewer *out);
+
+/* --- cut faces of clip planes ---------------------------------------------
+ *
+ * They are flat: next to them the gradient, which knows of no cut, lights
+ * nothing but noise.  Up to this many voxels below a face that the viewer sees
+ * colours are unlit, and lit as elsewhere from twice as many on. */
+#define SNOW_FLAT_DEPTH 2
+
+/* Returns whether the viewer is beyond a plane. */
+bool snow_clip_is_seen(const double plane[4], const snow_viewer *viewer);
+
+/* How much of the light at a place is that of cut faces, 0 to 1. */
+float snow_clip_flatness(const snow_clip_planes *clip,
+                         const snow_viewer *viewer, const double at[3]);
 
 #endif

@@ -270,22 +270,42 @@ static void cut(walk *w, double a, double b, double most) {
         w->enter = fmax(w->enter, (most - a) / b);
 }
 
-static void cut_planes(walk *w) {
+/* A plane of the world over index positions. */
+static void index_plane(const walk *w, int n, double out[4]) {
     const double(*m)[4] = w->cast->scene->info.matrix;
+    const double *plane = w->cast->planes[n];
+    out[3] = plane[3];
+    for (int r = 0; r < 3; r++)
+        out[3] -= plane[r] * m[r][3];
+    for (int c = 0; c < 3; c++)
+        out[c] = plane[0] * m[0][c] + plane[1] * m[1][c] + plane[2] * m[2][c];
+}
+
+static void cut_planes(walk *w) {
     for (int n = 0; n < w->cast->plane_count; n++) {
-        const double *plane = w->cast->planes[n];
-        double a = 0, b = 0;
-        for (int r = 0; r < 3; r++) {
-            double from = m[r][3], along = 0;
-            for (int c = 0; c < 3; c++) {
-                from += m[r][c] * w->ray.start[c];
-                along += m[r][c] * w->ray.step[c];
-            }
-            a += plane[r] * from;
-            b += plane[r] * along;
-        }
-        cut(w, a, b, plane[3]);
+        double plane[4];
+        index_plane(w, n, plane);
+        cut(w, reference_dot(plane, w->ray.start),
+            reference_dot(plane, w->ray.step), plane[3]);
     }
+}
+
+/* How much of the light at a place is that of cut faces; the viewer is beyond
+ * the planes whose faces it sees. */
+static double flatness(const walk *w, const double at[3]) {
+    double flat = 0;
+    for (int n = 0; n < w->cast->plane_count; n++) {
+        double plane[4];
+        index_plane(w, n, plane);
+        double below = (plane[3] - reference_dot(plane, at)) /
+                       sqrt(reference_dot(plane, plane));
+        bool is_seen = w->cast->scene->view.fov > 0
+                           ? reference_dot(plane, w->ray.start) > plane[3]
+                           : reference_dot(plane, w->ray.step) < 0;
+        if (is_seen)
+            flat = fmax(flat, fmin(1, 2 - below / 2));
+    }
+    return flat;
 }
 
 static double smallest_spacing(const reference_scene *scene) {
@@ -338,8 +358,9 @@ static void normalise(double a[3]) {
         a[n] /= length;
 }
 
-/* Phong's model, seen along the ray. */
-static void shade(const walk *w, const double gradient[3], double rgb[3]) {
+/* Phong's model, seen along the ray; none on a cut face. */
+static void shade(const walk *w, const double at[3], const double gradient[3],
+                  double rgb[3]) {
     const snow_settings *s = &w->cast->scene->settings;
     const double(*m)[4] = w->cast->scene->info.matrix;
     double inverse[3][3], normal[3], viewer[3], lit[2];
@@ -352,8 +373,10 @@ static void shade(const walk *w, const double gradient[3], double rgb[3]) {
     }
     normalise(viewer);
     reference_light(s, w->camera, normal, viewer, lit);
+    const double flat = flatness(w, at);
     for (int c = 0; c < 3; c++)
-        rgb[c] = fmin(1, rgb[c] * lit[0] + lit[1]);
+        rgb[c] = fmin(1, rgb[c] * (flat + (1 - flat) * lit[0]) +
+                             (1 - flat) * lit[1]);
 }
 
 /* --- mode over ------------------------------------------------------------ */
@@ -381,7 +404,7 @@ static void sample_at(const walk *w, const double at[3], double rgba[4]) {
     if (scene->settings.shade != SNOW_SHADE_PHONG)
         return;
     add_border(w->cast, *w->range, at, gradient);
-    shade(w, gradient, rgba);
+    shade(w, at, gradient, rgba);
 }
 
 static void cast_over(const walk *w, double pixel[4], double *depth) {
@@ -476,7 +499,7 @@ static void cast_iso(const walk *w, double pixel[4], double *depth) {
         return;
     gradient_at(w->cast, at, 0, gradient);
     add_border(w->cast, *w->range, at, gradient);
-    shade(w, gradient, pixel);
+    shade(w, at, gradient, pixel);
 }
 
 double *reference_cast_rays(const reference_cast *cast, double *depth) {

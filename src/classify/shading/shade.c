@@ -90,6 +90,7 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
             "the volume's matrix is singular: it must be invertible for "
             "shading; correct the volume's orientation and spacing");
     snow_shader_turn(&shader, placement->back);
+    snow_clip_viewer(placement, &shader.eye);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             shader.metric[i][j] = snow_dot(inverse[i], inverse[j]);
@@ -127,10 +128,23 @@ static inline float shaded(float color, double factor, double white) {
 #include "simd/each_isa.h"
 
 void snow_shade_gradients(const snow_shader *shader,
-                          const double gradients[3][SHADE_BLOCK], int count,
-                          int channels, float *samples) {
-    SNOW_OF_ISA(shader->isa, shade_block)(shader, gradients, count, channels,
-                                          samples);
+                          const double gradients[3][SHADE_BLOCK],
+                          const float *flat, int count, int channels,
+                          float *samples) {
+    SNOW_OF_ISA(shader->isa, shade_block)(shader, gradients, flat, count,
+                                          channels, samples);
+}
+
+/* Of voxels of a row, where clip planes have cut the volume. */
+static void find_flatness(const snow_shader *shader,
+                          const snow_gradient_row *row, const uint32_t *columns,
+                          size_t count, float *flat) {
+    const snow_clip_planes *clip = shader->volume->clip;
+    double at[3] = {(double)row->at[0], (double)row->at[1], (double)row->at[2]};
+    for (size_t n = 0; clip && n < count; n++) {
+        at[row->axis] = columns[n];
+        flat[n] = snow_clip_flatness(clip, &shader->eye, at);
+    }
 }
 
 void snow_shade_row_block(const snow_shader *shader, int channels,
@@ -138,6 +152,7 @@ void snow_shade_row_block(const snow_shader *shader, int channels,
     const snow_placement *p = shader->placement;
     const snow_volume *volume = shader->volume;
     double gradients[3][SHADE_BLOCK];
+    float flat[SHADE_BLOCK];
     memset(gradients, 0, sizeof gradients);
     snow_gradient_row row = {.volume = volume, .axis = p->u_axis};
     row.at[p->slice_axis] = row_block->slice;
@@ -149,9 +164,11 @@ void snow_shade_row_block(const snow_shader *shader, int channels,
             count = count < SHADE_BLOCK ? count : SHADE_BLOCK;
             snow_gradients_of_row(&row, row_block->columns + n, count,
                                   SHADE_BLOCK, gradients[0]);
+            find_flatness(shader, &row, row_block->columns + n, count, flat);
             snow_shade_gradients(
-                shader, (const double(*)[SHADE_BLOCK])gradients, (int)count,
-                channels, row_block->samples + n * (size_t)channels);
+                shader, (const double(*)[SHADE_BLOCK])gradients,
+                volume->clip ? flat : NULL, (int)count, channels,
+                row_block->samples + n * (size_t)channels);
             n += count;
         }
     }

@@ -93,11 +93,16 @@ TARGET static void NAME(light_block)(const snow_shader *s,
 }
 
 TARGET static void NAME(shade_block)(const snow_shader *s,
-                                     const double g[3][SHADE_BLOCK], int count,
-                                     int channels, float *samples) {
+                                     const double g[3][SHADE_BLOCK],
+                                     const float *flat, int count, int channels,
+                                     float *samples) {
     double factor[SHADE_BLOCK], white[SHADE_BLOCK];
     int whole = (count + 7) & -8; /* whole vectors; SHADE_BLOCK at most */
     NAME(light_block)(s, g, whole, factor, white);
+    for (int i = 0; flat && i < count; i++) {
+        factor[i] += (double)flat[i] * (1 - factor[i]);
+        white[i] *= 1 - (double)flat[i];
+    }
     if (channels == 2)
         for (int i = 0; i < count; i++) {
             float *c = samples + 2 * i;

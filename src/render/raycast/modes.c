@@ -107,11 +107,12 @@ static void shade_surface(const snow_raycast_pass *pass, const snow_ray *ray,
     double value = value_at(pass, ray, i, eye, at);
     snow_field_gradient(&pass->field, at, value, eye->sides, gradient);
     snow_field_add_border(&pass->field, at, gradient);
+    const float flat = snow_raycast_flatness(pass, at);
     for (int axis = 0; axis < 3; axis++)
         eye->gradients[axis][0] = gradient[axis];
     snow_shade_gradients(&eye->shader,
-                         (const double(*)[SNOW_SHADE_BLOCK])eye->gradients, 1,
-                         channels, pixel);
+                         (const double(*)[SNOW_SHADE_BLOCK])eye->gradients,
+                         &flat, 1, channels, pixel);
 }
 
 /* Returns whether a position is next to a voxel of the part. */

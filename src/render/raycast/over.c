@@ -17,8 +17,9 @@
 typedef struct over_batch {
     float samples[4 * BATCH]; /* straight colours, and opacities of steps */
     double t[BATCH];
-    bool own[BATCH];  /* of the picture's volume, not of a layer */
-    int group[BATCH]; /* samples of one number are mixed */
+    float flat[BATCH]; /* how much of their light is that of cut faces */
+    bool own[BATCH];   /* of the picture's volume, not of a layer */
+    int group[BATCH];  /* samples of one number are mixed */
     int count;
 } over_batch;
 
@@ -96,9 +97,9 @@ static void flush(const snow_raycast_pass *pass, const snow_ray *ray,
     over_batch *batch = &state->batch;
     int channels = pass->job->channels;
     if (pass->shaded)
-        snow_shade_gradients(&eye->shader,
-                             (const double(*)[SNOW_SHADE_BLOCK])eye->gradients,
-                             batch->count, channels, batch->samples);
+        snow_shade_gradients(
+            &eye->shader, (const double(*)[SNOW_SHADE_BLOCK])eye->gradients,
+            batch->flat, batch->count, channels, batch->samples);
     else {
         for (int n = 0; n < batch->count; n++)
             for (int c = 0; c < channels - 1; c++)
@@ -170,6 +171,7 @@ static void add_sample(const snow_raycast_pass *pass, const snow_ray *ray,
     for (int axis = 0; axis < 3; axis++)
         eye->gradients[axis][n] = gradient[axis];
     batch->t[n] = t;
+    batch->flat[n] = snow_raycast_flatness(pass, at);
     batch->own[n] = own == eye;
     batch->group[n] = state->group;
     batch->count++;

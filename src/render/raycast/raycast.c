@@ -141,6 +141,13 @@ float snow_raycast_depth(const snow_raycast_pass *pass, const snow_ray *ray,
     return (float)(snow_dot(pass->depth, at) + pass->depth[3]);
 }
 
+float snow_raycast_flatness(const snow_raycast_pass *pass, const double at[3]) {
+    double own[3];
+    for (int axis = 0; axis < 3; axis++)
+        own[axis] = at[axis] - (double)pass->field.stored[axis];
+    return snow_clip_flatness(pass->field.volume->clip, &pass->viewer, own);
+}
+
 /* --- lines ---------------------------------------------------------------- */
 
 static void cast_line(void *of, int64_t y, int worker) {
@@ -266,6 +273,9 @@ static snow_status prepare_field(const snow_picture *p, const snow_job *job,
         SNOW_TRY(find_border(pass));
     SNOW_TRY(snow_shader_init(job->context, volume, &job->placement, s,
                               &pass->shader));
+    snow_clip_viewer(&job->placement, &pass->viewer);
+    for (int axis = 0; axis < 3; axis++)
+        pass->viewer.eye[axis] -= (double)pass->field.stored[axis];
     set_colors(pass);
     choose_cast(p, pass);
     return SNOW_STATUS_OK;

@@ -54,6 +54,7 @@ struct snow_raycast_pass {
     snow_field field;
     snow_raycast_fn *cast;
     snow_shader shader;
+    snow_viewer viewer; /* as the stored voxels see it */
     bool shaded, gradient_factors;
     bool labels, nearest; /* numbers that name things (field.h) */
     double step;          /* the longest, in world units */
@@ -84,6 +85,9 @@ static inline void snow_ray_at(const snow_ray *ray, double t, double at[3]) {
 
 /* How many steps from `at` on stay between the same voxels, at least 1. */
 int64_t snow_ray_skip(const snow_ray *ray, const double at[3]);
+
+/* How much of the light at a position is that of cut faces. */
+float snow_raycast_flatness(const snow_raycast_pass *pass, const double at[3]);
 
 /* The depth of a picture at t. */
 float snow_raycast_depth(const snow_raycast_pass *pass, const snow_ray *ray,

@@ -244,9 +244,9 @@ TARGET VALUE_STAGE void NAME(look_up)(const snow_value_splat *p, value_queue *q,
             V(row_gather)(p->table->entries,
                           NAME(entries)(p->table, q->front + n, q->back + n),
                           color);
-        if (sloped && !p->surface)
+        if (sloped && !p->surface && !p->labels)
             place = NAME(split)(color);
-        if (sloped)
+        if (sloped && !p->labels)
             V(row_store)(q->place + n, place);
         for (int c = 0; c < channels - 1; c++)
             V(row_store)(q->color[c] + n, color[c]);
@@ -274,6 +274,8 @@ TARGET VALUE_STAGE void NAME(light_all)(const snow_value_splat *p,
                 slopes[axis] = V(row_load)(q->slopes[axis] + n);
         else
             NAME(slopes)(q, n, place, slopes, eye);
+        if (p->clip_count)
+            V(row_store)(q->place + n, place);
         if (p->fade)
             NAME(fade)(p, q, n, within, slopes, channels);
         if (p->light) {
@@ -326,16 +328,20 @@ TARGET static void NAME(lengthen_all)(const snow_value_splat *p,
     }
 }
 
-/* All samples of a queue, whose last 32 entries and more are 0. */
+/* All samples of a queue, of some phases of a slab; its last 32 entries and
+ * more are 0. */
 TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
-                                     float slope[2][2], value_queue *q,
-                                     int count, const int channels,
-                                     const bool sloped, bool cuts,
-                                     const bool eye) {
+                                     float slope[2][2], const value_slab *slabs,
+                                     int phases, value_queue *q, int count,
+                                     const int channels, const bool sloped,
+                                     bool cuts, const bool eye) {
     const bool by_table = !p->labels && !p->surface;
     NAME(look_up)(p, q, count, channels, sloped);
     if (sloped)
         NAME(light_all)(p, slope, q, count, channels, cuts, eye);
+    for (int at = 0, n = 0; sloped && p->light && p->clip_count && at < phases;
+         at++)
+        n = snow_value_flatten(p, &slabs[at], q, n);
     if (sloped && p->light)
         NAME(shade)(p->light, q, count, channels);
     if (eye && by_table)

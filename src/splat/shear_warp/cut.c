@@ -92,14 +92,15 @@ void snow_value_cut(const double front[2], const double back[2], double low,
     }
 }
 
-/* Whether all lanes of all rows of a tile are within a plane (1), beyond it
- * (-1) or neither. */
-static int side_of(const double plane[4], const double at[4]) {
+/* Whether all lanes of all rows of a tile are so far within a plane (1), beyond
+ * that (-1) or neither. */
+static int side_of(const double plane[4], double within, const double at[4]) {
     double height = plane[0] * at[0] + plane[1] * at[1] + plane[2] * at[2];
     double u = 31 * at[3] * plane[0], v = 31 * at[3] * plane[1];
     double most = height + fmax(0, u) + fmax(0, v);
     double least = height + fmin(0, u) + fmin(0, v);
-    return most <= plane[3] ? 1 : least > plane[3] ? -1 : 0;
+    double end = plane[3] - within;
+    return most <= end ? 1 : least > end ? -1 : 0;
 }
 
 /* Narrows the parts of all samples to those within a plane. */
@@ -134,10 +135,14 @@ static void store_parts(double (*parts)[32][2], value_clip *out) {
 void snow_value_clip(const snow_value_splat *p, const double front[4],
                      const double back[4], value_clip *out) {
     double parts[SNOW_VALUE_ROWS][32][2];
-    out->cuts = false;
+    out->cuts = out->flat = false;
+    memcpy(out->front, front, sizeof out->front);
+    memcpy(out->back, back, sizeof out->back);
     for (size_t plane = 0; plane < p->clip_count; plane++) {
         const double *clip = p->clips[plane];
-        int sides[2] = {side_of(clip, front), side_of(clip, back)};
+        int sides[2] = {side_of(clip, 0, front), side_of(clip, 0, back)};
+        out->flat |= clip[4] > 0 && (side_of(clip, clip[4], front) <= 0 ||
+                                     side_of(clip, clip[4], back) <= 0);
         if (sides[0] > 0 && sides[1] > 0)
             continue;
         for (int row = 0; !out->cuts && row < SNOW_VALUE_ROWS; row++)
@@ -155,6 +160,45 @@ void snow_value_clip(const snow_value_splat *p, const double front[4],
     if (out->cuts)
         store_parts(parts, out);
 }
+
+/* --- cut faces ------------------------------------------------------------ */
+
+/* How much of the light at a place of a slab is theirs. */
+static double flatness(const snow_value_splat *p, const value_clip *at, int row,
+                       int lane, double place) {
+    const double apart = at->front[3] + place * (at->back[3] - at->front[3]);
+    const double aside[3] = {lane * apart, row * apart, 0};
+    double flat = 0;
+    for (size_t n = 0; n < p->clip_count; n++) {
+        const double *clip = p->clips[n];
+        double below = clip[3];
+        for (int axis = 0; axis < 3; axis++)
+            below -= clip[axis] * (at->front[axis] + aside[axis] +
+                                   place * (at->back[axis] - at->front[axis]));
+        if (clip[4] > 0)
+            flat = fmax(flat, 2 - 2 * below / clip[4]);
+    }
+    return fmin(flat, 1);
+}
+
+int snow_value_flatten(const snow_value_splat *p, const value_slab *slab,
+                       value_queue *q, int n) {
+    const double one = p->light->bright ? 16384 : INT16_MAX;
+    for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
+        int row = __builtin_ctz(rows);
+        for (uint32_t left = slab->active[row]; left; left &= left - 1, n++) {
+            if (!slab->clip.flat)
+                continue;
+            double flat = flatness(p, &slab->clip, row, __builtin_ctz(left),
+                                   q->place[n] / 32768.0);
+            q->light[n] += (int16_t)(flat * (one - q->light[n]));
+            q->white[n] -= (int16_t)(flat * q->white[n]);
+        }
+    }
+    return n;
+}
+
+/* --- parts ---------------------------------------------------------------- */
 
 /* As a bit of 32, or beyond all. */
 static int lane_of(double place) {

@@ -222,9 +222,10 @@ static bool pack(label_slab *slab, label_part part, value_queue *q, int count,
             (int16_t)(rgba[c] * slab->splat->table->full + 0.5);
     if (!q->color[3][count])
         return false;
+    int place = (int)floor(32768 * t + 0.5);
+    q->place[count] = (int16_t)(place < INT16_MAX ? place : INT16_MAX);
     if (sloped)
-        find_slopes(slab, winner(slab, t), (int)floor(32768 * t + 0.5), q,
-                    count);
+        find_slopes(slab, winner(slab, t), place, q, count);
     return true;
 }
 

@@ -104,6 +104,8 @@ typedef struct value_clip {
     int16_t from[SNOW_VALUE_ROWS][32], to[SNOW_VALUE_ROWS][32];
     uint32_t some[SNOW_VALUE_ROWS];
     bool cuts;
+    double front[4], back[4]; /* of snow_value_clip */
+    bool flat;                /* a cut face is near */
 } value_clip;
 
 /* What a slab of a phase needs, found before its turn. */
@@ -388,6 +390,11 @@ void snow_value_cut(const double front[2], const double back[2], double low,
  * lanes and rows are apart. */
 void snow_value_clip(const snow_value_splat *splat, const double front[4],
                      const double back[4], value_clip *out);
+
+/* The light of the samples of a slab of a phase, from number `n` on, gives way
+ * to that of cut faces; returns the number of the one behind them. */
+int snow_value_flatten(const snow_value_splat *splat, const value_slab *slab,
+                       value_queue *queue, int n);
 
 /* Where 32 samples from `n` on meet a surface, of 32768 of a slab. */
 void snow_value_meet(const snow_value_surface *surface,

@@ -314,7 +314,8 @@ TARGET VALUE_INLINE bool NAME(slab)(const snow_value_splat *p, int n, int first,
     if (!count)
         return false;
     NAME(end_queue)(p, n, q, count, eye);
-    NAME(color)(p, scratch->slope, q, count, channels, sloped, cuts, eye);
+    NAME(color)(p, scratch->slope, slabs, end - first, q, count, channels,
+                sloped, cuts, eye);
     count = 0;
     for (int phase = first; phase < end; phase++)
         if (p->floats)
