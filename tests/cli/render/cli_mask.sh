@@ -175,6 +175,36 @@ inside = [a[n] / a[n + 3] for n in range(4 * 90 * 40, 4 * 90 * 41, 4)
           if a[n + 3] > 0.95]
 assert len(inside) > 20 and max(inside) < 1.1 * min(inside), inside'
 done
+# A cut face has the colours of the values in its plane, and no light: of a linear
+# field, and of labels, whose gradient is 0.
+while IFS="|" read -r options levels value; do
+    run 0 "a cut face: $options" render $options --clip 0.3,0.2,1,20 -c grey \
+        --range 0,200 --opacity 0:1,200:1 --view +z --fit volume -s 60x60 -o face.npy -y
+    check "is flat" python3 -c '
+import array, math, sys
+a = array.array("f", open("face.npy", "rb").read()[-60 * 60 * 4 * 4:])
+off = 0
+for i in range(60 * 60):
+    side = 28 * math.sqrt(3) / 60 # of a pixel; the middle is at 13.5
+    x, y = ((n + 0.5 - 30) * side for n in (i % 60, 59 - i // 60))
+    if abs(x) < 9 > abs(y):
+        x, y = x + 13.5, y + 13.5
+        z = 20 - 0.3 * x - 0.2 * y
+        off = max(off, abs(a[4 * i] / a[4 * i + 3] - eval(sys.argv[2]) / 200))
+assert off <= float(sys.argv[1]) / 255, off * 255' "$levels" "$value"
+done <<'END'
+slope.nrrd --method raycast|0.5|60 + 2 * (x + y + z)
+slope.nrrd|1.5|60 + 2 * (x + y + z)
+slope.nrrd --quality draft|1.5|60 + 2 * (x + y + z)
+slope.nrrd --quality high|1.5|60 + 2 * (x + y + z)
+slope.nrrd --method footprint|4|60 + 2 * (x + y + z)
+slope.nrrd --method footprint --kernel tent|4|60 + 2 * (x + y + z)
+slope.nrrd -m iso --iso 90|1|90
+slope.nrrd -m iso --iso 90 --method raycast|1|90
+even.nrrd|1|100
+even.nrrd --method raycast|1|100
+even.nrrd --method footprint|1|100
+END
 for cut in "--mask ball.nrrd" "--clip 0,0,1,12"; do
     run 0 "CT numbers with $cut" "$TOOL" render hu.nrrd $cut --preset ct-soft \
         -s 40x40 -o hu.png -y
