@@ -74,6 +74,14 @@ typedef enum snow_endian {   /* byte order of raw data */
     SNOW_ENDIAN_LITTLE,
     SNOW_ENDIAN_BIG
 } snow_endian;
+/* Unit of PET of DICOM, voxels as stored: by weight, lean mass, surface. */
+typedef enum snow_suv {
+    SNOW_SUV_AUTO = 0, /* BW where the file says what it takes */
+    SNOW_SUV_BW,
+    SNOW_SUV_LBM,
+    SNOW_SUV_BSA,
+    SNOW_SUV_NONE /* that of the file */
+} snow_suv;
 /* Labels of a mask, both ends included; the most ranges, and clip planes. */
 typedef struct snow_label_range {
     int64_t first, last;
@@ -107,6 +115,7 @@ typedef struct snow_volume_options {
     const char *label_table; /* path: names and colours of labels; or NULL */
     bool each_channel, time_given; /* no warning of others: channels, steps */
     int64_t levels; /* of refinement, so many of the coarsest; 0: all */
+    snow_suv suv;   /* of PET */
 } snow_volume_options;
 SNOW_RECORD(snow_volume_options);
 /* Opens a file (format by its first bytes, then its name; gzip is undone), "-"
@@ -132,7 +141,7 @@ SNOW_API snow_status snow_volume_open_with(snow_context *, const char *name,
     const snow_volume_options *options, snow_volume **out);
 /* Over the caller's voxels, not copied. Of `info` dims, type, matrix (0s:
  * identity), slope (0: 1), intercept, medical, unit, modality, window,
- * hounsfield, eight_bits and whole count. */
+ * value_unit, hounsfield, eight_bits and whole count. */
 SNOW_API snow_status snow_volume_wrap(snow_context *context,
     const snow_volume_info *info, const void *voxels, snow_volume **out);
 /* Promises that wrapped voxels stay, until called again: encodings are kept. */

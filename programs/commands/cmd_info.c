@@ -149,10 +149,10 @@ static void print_geometry(const facts *f) {
            "dims", info->dims[0], info->dims[1], info->dims[2],
            f->measures.voxels);
     printf("%-14s%s\n", "type", snow_type_name(info->type));
+    const bool both = *info->quantity && *info->value_unit;
     if (*info->quantity || *info->value_unit)
-        printf("%-14s%s%s%s%s\n", "quantity", info->quantity,
-               *info->value_unit ? " (" : "", info->value_unit,
-               *info->value_unit ? ")" : "");
+        printf("%-14s%s%s%s%s\n", "quantity", info->quantity, both ? " (" : "",
+               info->value_unit, both ? ")" : "");
     printf("%-14s%g x %g x %g%s%s\n", "spacing", info->spacing[0],
            info->spacing[1], info->spacing[2], info->unit[0] ? " " : "",
            info->unit);

@@ -10,6 +10,21 @@
 #include <stdio.h>
 #include <string.h>
 
+snow_suv options_suv(const options *opts) {
+    return opts->suv ? (snow_suv)(SNOW_SUV_BW + option_choice("suv", opts->suv))
+                     : SNOW_SUV_AUTO;
+}
+
+/* Data values stay as the file has them where they are not shown in colours. */
+static snow_suv suv_of(const options *opts) {
+    static const char *const kept[] = {"mean", "sum", "slice"};
+    bool values = opts->one_channel;
+    for (size_t i = 0; i < sizeof kept / sizeof *kept && opts->output; i++)
+        values |= strcmp(opts->mode, kept[i]) == 0 &&
+                  snow_image_format_bits(opts->output) == 0;
+    return values && !opts->suv ? SNOW_SUV_NONE : options_suv(opts);
+}
+
 /* Values that were not given stay 0.  The library refuses options that do not
  * fit a format, so it must be able to see whether they were given. */
 snow_volume_options data_options(const options *opts) {
@@ -25,6 +40,7 @@ snow_volume_options data_options(const options *opts) {
         .each_channel = opts->mixes,
         .allow_gaps = opts->allow_gaps,
         .levels = opts->levels,
+        .suv = suv_of(opts),
         .component = opts->component,
         .dataset = opts->dataset,
         .series = opts->series,

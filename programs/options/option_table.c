@@ -226,6 +226,10 @@ const option_row option_table[] = {
      0, "open a DICOM folder, an OME-TIFF or a stack of ImageJ in which slices are "
      "missing or cut: a note names each, and its place stays transparent (default: "
      "refuse, except for info)"},
+    {"suv", 0, "bw|lbm|bsa|none", TOPIC_DATA, INPUT, read_choice, FIELD(suv), 0,
+     0, "unit of PET in DICOM: standardized uptake by body weight, lean mass or "
+     "surface, or as stored (default: bw in pictures; none for data values: info, "
+     "convert, and float files of slices, mean and sum)"},
     {"levels", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(levels), 1, 24,
      "levels of refinement to read, the coarsest first, as if the file had no "
      "finer ones: of AMReX and .vth (default: all)"},

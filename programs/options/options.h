@@ -116,6 +116,7 @@ typedef struct options {
     const char *dataset;   /* NULL: not given */
     const char *series;    /* NULL: not given */
     bool allow_gaps;
+    const char *suv;                         /* NULL: not given */
     int64_t levels;                          /* 0: all */
     int64_t crop[3][2];                      /* 0: the end */
     double clip[SNOW_CLIPS_MAX][4];          /* zeros: none */

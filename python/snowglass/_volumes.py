@@ -49,7 +49,8 @@ class Volume(_snowglass.Volume):
     For files: memory (the most bytes that the library may hold), dims, type ("uint8", "int16", ...), endian, offset (raw data),
     time, channel (below), component ("x", "magnitude", or a number from 0), crop
     ((x0, x1), (y0, y1), (z0, z1)), dataset, series, allow_gaps (a DICOM folder,
-    an OME-TIFF or a stack of ImageJ in which slices are missing is opened), levels (of refinement that are read,
+    an OME-TIFF or a stack of ImageJ in which slices are missing is opened), suv (unit of PET in DICOM: "bw", "lbm",
+    "bsa", or "none", as stored), levels (of refinement that are read,
     the coarsest first), mask (a path), labels ("1,4-7"),
     label_table (a path: names and colours), clip (planes (a, b, c, d): what lies where a x + b y + c z > d is cut away).
 

@@ -66,6 +66,10 @@ static snow_status finish(snow_context *context, snow_status status,
         *info = snow_volume_info_of_box(given, first, given->dims);
     if (status == SNOW_STATUS_OK && volume)
         volume->info = *info;
+    if (status == SNOW_STATUS_OK && options->suv != SNOW_SUV_AUTO &&
+        options->suv != SNOW_SUV_NONE && strcmp(given->modality, "PT") != 0)
+        snow_notify(context, "--suv: the volume is no PET in DICOM; its values "
+                             "stay as they are");
     return snow_volume_give(status, volume, out);
 }
 

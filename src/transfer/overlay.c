@@ -9,11 +9,14 @@
  *                      |______0______|
  *               -top  -start      start  top
  *
- * Other values, as doses and activities, have the colours of hot. */
+ * Activities are seen where an SUV is that of tumours rather than of blood and
+ * liver, and doses from 5 % of the most on, both translucent.  Other values
+ * have the colours of hot. */
 #include "transfer/look.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* Bins of either sign, beside that of 0. */
 #define BINS 1024
@@ -21,6 +24,11 @@
 /* Percentiles of magnitudes: where opacities start, and where they end. */
 #define START 95
 #define TOP 99.9
+
+/* SUV: where it is seen, and what is brightest; the same of a dose's most. */
+#define UPTAKE 2.5
+#define MOST_UPTAKE 7
+#define DOSE 0.05
 
 /* As of fields: the weaker sign reaches so far, relative to the other, and the
  * middle value is so near to 0. */
@@ -102,6 +110,35 @@ static void build_statistics(const magnitudes *m, bool both,
              both ? "magnitudes" : "values");
 }
 
+/* Values that mean something by their modality; false: these do not. */
+static bool build_known(const snow_histogram *histogram, const snow_look *look,
+                        snow_transfer_builder *builder) {
+    const snow_volume_info *info = &histogram->volume->info;
+    const bool dose = !strcmp(info->modality, "RTDOSE");
+    const double start = dose ? DOSE * histogram->max : UPTAKE;
+    if ((!dose && strncmp(info->value_unit, "SUV", 3) != 0) ||
+        !(histogram->max > start))
+        return false;
+    builder->low = 0;
+    builder->high = dose ? histogram->max : MOST_UPTAKE;
+    builder->opacity_count = 0;
+    snow_transfer_builder_add_opacity(builder, start, 0);
+    snow_transfer_builder_add_opacity(builder, start, dose ? 0.05 : 0.2);
+    snow_transfer_builder_add_opacity(builder, builder->high, 0.6);
+    builder->unshaded = builder->around_0 = false;
+    builder->preset = NULL;
+    builder->colormap = dose ? "turbo" : "hot";
+    builder->reason = dose ? "a dose" : "PET";
+    if (look->opacity_count)
+        return true;
+    if (dose)
+        strcpy(builder->range_note, ", from 5% of the most on");
+    else
+        snprintf(builder->range_note, sizeof builder->range_note,
+                 ", from %g %s on", UPTAKE, info->value_unit);
+    return true;
+}
+
 snow_status snow_transfer_builder_overlay(const snow_histogram *histogram,
                                           const snow_look *look,
                                           snow_transfer_builder *builder) {
@@ -112,6 +149,8 @@ snow_status snow_transfer_builder_overlay(const snow_histogram *histogram,
         builder->colormap = "hot";
         builder->preset = NULL;
     }
+    if (snow_look_is_unranged(look) && build_known(histogram, look, builder))
+        return SNOW_STATUS_OK;
     if (!snow_look_is_unranged(look) || !above ||
         !(histogram->min < histogram->max) ||
         !(info->estimate || (below && histogram->fractions)) ||

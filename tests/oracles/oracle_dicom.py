@@ -20,6 +20,11 @@ from dicom_sets import (RAS, ExplicitVRBigEndian, ExplicitVRLittleEndian,
                         pydicom, run_lengths, write)
 from pydicom.uid import JPEG2000Lossless, JPEGBaseline8Bit
 
+try:
+    from PIL import Image
+except ImportError:
+    Image = None
+
 # Without GDCM what is packed by JPEG's kinds is refused, and nothing else.
 GDCM = oracle.library("gdcm")
 UNBUILT = "this build cannot read compressed DICOM images"
@@ -387,6 +392,226 @@ write("dose.dcm", dose)
 oracle.expect("dose.dcm", long * 0.25, grid((0.5, 0.75, 2), (1, 2, 3)),
               dtype="u4", name="a dose")
 oracle.says("a dose", "dose.dcm", None)
+
+# --- PET and doses ------------------------------------------------------------
+
+PET = {"Modality": "PT", "SOPClassUID": "1.2.840.10008.5.1.4.1.1.128",
+       "Units": "BQML", "DecayCorrection": "START", "PatientWeight": 70,
+       "PatientSize": 1.75, "PatientSex": "M", "RescaleIntercept": 0,
+       "CorrectedImage": ["DECY", "ATTN", "SCAT"], "SeriesDate": "20240105",
+       "SeriesTime": "101500", "AcquisitionDate": "20240105",
+       "AcquisitionTime": Each(["101500", "101800", "102100"]),
+       "RescaleSlope": Each([0.5, 0.25, 0.75])}
+DRUG = {"RadiopharmaceuticalStartTime": "091500", "RadionuclideHalfLife": 6586.2,
+        "RadionuclideTotalDose": 3.5e8}
+ACTIVITY = np.arange(300, 390, dtype="i2").reshape(3, 6, 5)
+SCALED = (ACTIVITY * np.array([0.5, 0.25, 0.75])[:, None, None]).astype("f4")
+
+
+def pet(private=(), **changed):
+    """A folder of a whole body with a bed for each slice."""
+    drug = {k: changed.pop(k, v) for k, v in {
+        **DRUG, "RadiopharmaceuticalStartDateTime": None}.items()}
+    tags = {k: v for k, v in {**PET, **changed}.items() if v is not None}
+    series("pet", ACTIVITY, rising[:3], RadiopharmaceuticalInformationSequence=[
+        holds(**{k: v for k, v in drug.items() if v is not None})], **tags)
+    for path in glob.glob("pet/*") if private else ():
+        data = opened(path)
+        block = data.private_block(private[0], private[1], create=True)
+        block.add_new(private[2], "DT" if private[0] == 9 else "DS", private[3])
+        write(path, data)
+
+
+def pet_is(name, factor, options=("--suv", "bw"), unit="SUVbw", voxels=SCALED,
+           note=None, path="pet"):
+    """The data values are those of the file times a factor; the voxels stay."""
+    found = oracle.told(path, *options)
+    if not found:
+        return
+    oracle.same_figures(name, found, oracle.figures(voxels.astype("f8") * factor))
+    if found.get("value_unit", "") != unit:
+        oracle.fail(name, f"unit {found.get('value_unit')!r}, not {unit!r}")
+    oracle.says(name, path, note, *options)
+
+
+# Seconds from injection to what slices are corrected to, counted by hand.
+MIDNIGHT = {"SeriesTime": "235500", "AcquisitionDate": None,
+            "AcquisitionTime": Each(["235500", "000100", "000700"]),
+            "RadiopharmaceuticalStartTime": "225500"}
+LATER = {"SeriesTime": "143000"}
+for name, seconds, tags in (
+        ("START", 3600, {}),
+        ("a series before its slices", 3000, {"SeriesTime": "100500"}),
+        ("a series made later", 3600, {"SeriesTime": "112030"}),
+        ("a series made a week later", 3600, {"SeriesDate": "20240112"}),
+        ("the first bed in the last file", 3600, {
+            **LATER, "AcquisitionTime": Each(["102100", "101800", "101500"])}),
+        ("no series time", 3600, {"SeriesTime": None}),
+        ("no acquisition times", 3600, {"AcquisitionTime": None}),
+        ("no dates", 3600, {"SeriesDate": None, "AcquisitionDate": None}),
+        ("no dates but of the dose", 3600, {
+            "SeriesDate": None, "AcquisitionDate": None,
+            "RadiopharmaceuticalStartDateTime": "20010101091500"}),
+        ("an injection before midnight", 1800, {
+            "SeriesDate": "20240106", "SeriesTime": "001500",
+            "AcquisitionDate": "20240106", "AcquisitionTime": "001500",
+            "RadiopharmaceuticalStartTime": "234500"}),
+        ("beds across midnight", 3600, MIDNIGHT),
+        ("the same, made later", 3600, {
+            **MIDNIGHT, "SeriesDate": "20240106", "SeriesTime": "003000"}),
+        ("a leap day", 43200, {
+            "SeriesDate": "20240301", "SeriesTime": "001500",
+            "AcquisitionDate": "20240301",
+            "RadiopharmaceuticalStartDateTime": "20240229121500"}),
+        ("a date and time", 3600 * 18, {
+            "RadiopharmaceuticalStartDateTime": "20240104161500"}),
+        ("nearly 12 half lives", 79020, {
+            "RadiopharmaceuticalStartDateTime": "20240104121800"}),
+        ("a zone and a fraction", 3600 * 18 - 0.25, {
+            "TimezoneOffsetFromUTC": "-0500",
+            "RadiopharmaceuticalStartDateTime": "20240104221500.250000+0100"}),
+        ("a zone of one alone", 3599.5, {
+            "RadiopharmaceuticalStartDateTime": "20240105091500.5+0100"}),
+        ("an empty date and time", 3600, {"RadiopharmaceuticalStartDateTime": ""}),
+        ("a fraction", 3599.25, {
+            "RadiopharmaceuticalStartTime": "091500.750000"}),
+        ("minutes alone", 3600, {"RadiopharmaceuticalStartTime": "0915"}),
+        ("ADMIN", 0, {"DecayCorrection": "ADMIN"}),
+        ("GE", 2700, {**LATER, "private": (
+            9, "GEMS_PETD_01", 0x0d, "20240105100000.00")}),
+        ("another maker", 3600, {**LATER, "private": (
+            9, "ACME 1.1", 0x0d, "20240105100000.00")})):
+    pet(**tags)
+    pet_is(name, 70000 / (3.5e8 * 2 ** (-seconds / 6586.2)))
+pet_is("one slice of them", 70000 / (3.5e8 * 2 ** (-3600 / 6586.2)),
+       path="pet/s_1.dcm", note="is one of 3 slices")
+PHILIPS = (0x7053, "Philips PET Private Group")
+FACTOR = 70000 / (3.5e8 * 2 ** (-3600 / 6586.2))
+for name, factor, tags in (
+        ("GML", 1, {"Units": "GML", "PatientWeight": None}),
+        ("SUV of Philips", 0.125, {"Units": "CNTS", "PatientWeight": 0,
+                                   "private": (*PHILIPS, 0, 0.125)}),
+        ("counts of Philips", 3 * FACTOR, {
+            "Units": "CNTS", "private": (*PHILIPS, 9, 3)})):
+    pet(**tags)
+    pet_is(name, factor)
+LEAN = 1.1 * 70 - 128 * (70 / 175) ** 2, 1.07 * 70 - 148 * (70 / 175) ** 2
+for name, kind, ratio, tags in (
+        ("lean, male", "lbm", LEAN[0] / 70, {}),
+        ("lean, female", "lbm", LEAN[1] / 70, {"PatientSex": "F"}),
+        ("surface", "bsa", 71.84 * 70 ** 0.425 * 175 ** 0.725 / 70000, {})):
+    pet(**tags)
+    pet_is(name, FACTOR * ratio, ("--suv", kind), "SUV" + kind)
+pet(Units="GML", SUVType="LBM")
+pet_is("SUV by lean mass", 1, ("--suv", "lbm"), "SUVlbm")
+for name, lacks, kind, tags in (
+        ("no weight", "PatientWeight (0010,1030)", "bw", {"PatientWeight": None}),
+        ("a weight of 0", "PatientWeight (0010,1030)", "bw", {"PatientWeight": 0}),
+        ("no dose", "RadionuclideTotalDose", "bw", {"RadionuclideTotalDose": None}),
+        ("no half life", "RadionuclideHalfLife", "bw", {"RadionuclideHalfLife": 0}),
+        ("no corrections", "ATTN in CorrectedImage", "bw", {"CorrectedImage": None}),
+        ("no DECY", "DECY in CorrectedImage", "bw", {"CorrectedImage": ["ATTN", "XDECY"]}),
+        ("decayed", "DecayCorrection (0054,1102)", "bw", {"DecayCorrection": "NONE"}),
+        ("no drug", "RadiopharmaceuticalStartTime", "bw", {
+            "RadiopharmaceuticalStartTime": None}),
+        ("over 12 half lives", "0 to 12 half lives before", "bw", {
+            "RadiopharmaceuticalStartDateTime": "20240104121738"}),
+        ("after the scan", "0 to 12 half lives before", "bw", {
+            "RadiopharmaceuticalStartDateTime": "20240105101501"}),
+        ("no time", "SeriesTime (0008,0031)", "bw", {
+            "SeriesTime": None, "AcquisitionTime": None}),
+        ("a weight of another world", "numbers that a body", "bw", {
+            "PatientWeight": "1e300"}),
+        ("a projection", "SeriesType", "bw", {
+            "SeriesType": ["WHOLE BODY", "REPROJECTION"]}),
+        ("no height", "PatientSize (0010,1020)", "lbm", {"PatientSize": None}),
+        ("another sex", "PatientSex (0010,0040)", "lbm", {"PatientSex": "O"})):
+    pet(**tags)
+    pet_is(name, 1, ("--suv", kind), "Bq/ml",
+           note=f"its values stay as stored, in Bq/ml: SUV{kind} needs")
+    oracle.says(name, "pet", lacks, "--suv", kind)
+pet(Units="CNTS")
+pet_is("counts", 1, unit="counts", note="Units (0054,1001)")
+pet(Units="PROPCPS")
+pet_is("rates", 1, unit="", note="its values stay as stored: SUVbw needs Units")
+pet(Modality="NM")
+pet_is("no PET", 1, unit="", note="--suv: the volume is no PET")
+pet()
+pet_is("as stored", 1, ["--suv", "none"], "Bq/ml")
+pet_is("as stored unasked", 1, [], "Bq/ml")
+# Pictures are of SUV, and files of numbers as stored, unless it is asked.
+for words, factor in (([], 1), (["--suv", "bw"], FACTOR)):
+    oracle.tool("slice", "pet", "-o", "cut.npy", "-y", "--at", 0, "--axis", "z",
+                *words)
+    oracle.checked += 1
+    if not np.isclose(np.load("cut.npy").max(), SCALED[0].max() * factor):
+        oracle.fail("a slice of PET", np.load("cut.npy").max())
+oracle.checked += 1
+done = oracle.tool("pet", "-o", "pet.png", "-y", "-s", "40x40", "-m", "mip",
+                   "--range", "full")
+if f"{SCALED.max() * FACTOR:.4g}"[:4] not in done.stderr:
+    oracle.fail("a picture of PET", done.stderr)
+
+# Over a CT they are seen from 2.5 SUV on, doses of 5 % of their most on, and
+# where the user says so otherwise; a slice has a pixel for each voxel there.
+GRID = [(0, 0, 2 * z) for z in range(3)]
+uptake = np.random.default_rng(7).uniform(0, 12, (3, 20, 20))
+stored = np.round(uptake / FACTOR / 4).astype("i2")
+stored[:, 0, 1] = 0  # white over white is not seen
+uptake = stored * (4 * FACTOR)
+flat = np.full((3, 20, 20), 40, "i2")
+flat[:, :, :10] = -80
+flat[:, 0, 0], flat[:, 0, 1] = -200, 200
+series("ct", flat, GRID, RescaleIntercept=0, RescaleSlope=1, RescaleType="HU",
+       PixelSpacing=[1, 1])
+one = {**PET, "AcquisitionTime": "101500", "RescaleSlope": 4, "PixelSpacing": [1, 1]}
+series("up", stored, GRID, RadiopharmaceuticalInformationSequence=[holds(**DRUG)],
+       **one)
+series("down", stored, GRID, RadiopharmaceuticalInformationSequence=[holds(**DRUG)],
+       **{**one, "PatientWeight": 0})
+dose = image(stored.astype("u4"), GRID[0], Modality="RTDOSE", PixelSpacing=[1, 1],
+             SOPClassUID="1.2.840.10008.5.1.4.1.1.481.2", DoseUnits="GY",
+             GridFrameOffsetVector=[0, 2, 4], DoseGridScaling=0.001)
+write("gy.dcm", dose)
+for name, words, line, seen in (
+        ("up", [], "hot 0..7; opacity 0 at 2.5,", uptake >= 2.5),
+        ("up", ["--overlay-look", "viridis"], "viridis 0..7;", uptake >= 2.5),
+        ("up", ["--suv", "none"], "overlay up: hot ", None),
+        ("up", ["--overlay-look", "hot,4,9"], "hot 4..9;", None),
+        ("down", [], "SUVbw needs PatientWeight", None),
+        ("gy.dcm", [], "turbo 0..", stored >= 0.05 * stored.max())):
+    cut = [oracle.tool("slice", "ct", "--axis", "z", "--at", 1, "-s", "20x20",
+                       "--no-labels", "-y", "-o", f"cut{len(more)}.png", *more)
+           for more in ([], ["--overlay", name, *words])][1]
+    oracle.checked += 1
+    if cut.returncode or line not in cut.stderr:
+        oracle.fail(f"{name} over a CT {words}", cut.stderr)
+    if seen is None or not Image:
+        continue
+    bare, both = [np.array(Image.open(f"cut{n}.png").convert("RGB"), int)
+                  for n in (0, 2 + len(words))]
+    colored = (bare != both).any(axis=2)
+    if (colored != seen[1]).any():
+        oracle.fail(f"{name} over a CT", f"{colored.sum()} of {seen[1].sum()} pixels")
+
+# Doses: their unit, and frames by their offsets or their places along z.
+for name, unit, tags, step in (
+        ("grays", "Gy", {}, 2), ("no unit", "", {"DoseUnits": "RELATIVE"}, 2),
+        ("places", "Gy", {"GridFrameOffsetVector": [7, 9, 11],
+                          "ImagePositionPatient": [0, 0, 7]}, 2),
+        ("places downwards", "Gy", {"GridFrameOffsetVector": [7, 5, 3],
+                                    "ImagePositionPatient": [0, 0, 7],
+                                    "ImageOrientationPatient": [-1, 0, 0, 0, 1, 0]}, 2)):
+    for tag, value in tags.items():
+        setattr(dose, tag, value)
+    write("gy.dcm", dose)
+    turn = np.array(dose.ImageOrientationPatient, float).reshape(2, 3)
+    oracle.expect("gy.dcm", stored * 0.001, dicom_sets.grid(
+        turn, (1, 1, step), dose.ImagePositionPatient), dtype="u4", name=name)
+    oracle.checked += 1
+    if oracle.told("gy.dcm").get("value_unit", "") != unit:
+        oracle.fail(name, f"not {unit}")
+    dose.DoseUnits = "GY"
 
 # What older programs leave: bytes behind the pixels, 0 frames; tables and maps.
 table = holds(LUTDescriptor=[2, 0, 16], ModalityLUTType="US",

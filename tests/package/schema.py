@@ -51,6 +51,7 @@ CASES = [
     {"window": 100}, {"window": [100, 50]}, {"window": [100]},
     {"verb": "render"}, {"version": "0.1.0"},
     {"version": True}, {"fps": 1000}, {"fps": 0}, {"allow-gaps": False},
+    {"suv": "lbm"}, {"suv": "weight"},
     {"input": ["phantom:shells"]}, {"input": 3}, {"opacity-unit": "mm"},
     {"opacity-unit": "cm"}, {"shade": "none"}, {"light": "head"},
     {"light": [30, 40]}, {"light": "left"}, {"material": [1, 0, 0, 1000]},

@@ -449,6 +449,22 @@ class Arrays(InFolder):
         self.assertTrue(numpy.isnan(voxels[3]).all())
         self.assertEqual(float(numpy.nansum(voxels)), 9 * (0 + 1 + 2 + 4 + 5))
 
+    def test_suv(self):
+        about = {(8, 0x60): ("CS", "PT"), (0x54, 0x1001): ("CS", "CNTS"),
+                 (0x28, 0x51): ("CS", "DECY\\ATTN"),
+                 (0x7053, 0x10): ("LO", "Philips PET Private Group"),
+                 (0x7053, 0x1000): ("DS", "0.125")}
+        with open("pet.dcm", "wb") as file:
+            file.write(dicom_slice(0, range(9), height=0, about=about))
+        for options, most, unit in (({}, 1, "SUVbw"), ({"suv": "bw"}, 1, "SUVbw"),
+                                    ({"suv": "none"}, 8, "counts")):
+            volume = sg.Volume("pet.dcm", **options)
+            self.assertEqual(volume.statistics["max"], most)
+            self.assertEqual(volume.info["value_unit"], unit)
+            self.assertEqual(int(numpy.asarray(volume).max()), 8)
+        with self.assertRaises(ValueError):
+            sg.Volume("pet.dcm", suv="lean")
+
     def test_series(self):
         for n in (3, 5, 12):
             sg.Volume(self.array // n).save(f"r_{n:03d}.nrrd")

@@ -16,6 +16,7 @@
  *     |
  *   voxels  voxels.c   frames scaled and put in place
  *           segments.c those of a segmentation: a volume of labels
+ *           suv.c      the units of PET and of doses
  *     |
  *   pixels  palette.c  the brightness of palette colours
  *           pixels.c   a frame's words, plain or compressed
@@ -79,6 +80,7 @@ typedef struct dicom_image {
     bool no_frames;          /* it says, which is taken for 1 */
     size_t first;            /* its frame in the order of reading */
     uint64_t sum;            /* of its pixels; 0: not computed */
+    double acquired; /* seconds since 1970, or of a day; NaN: not given */
 } dicom_image;
 
 /* The pixels of a slice: of a mosaic those of a tile. */
@@ -472,7 +474,9 @@ snow_status snow_dicom_walk_jpeg2000(snow_context *context,
 /* The source of frames: the given file, or files by their paths. */
 typedef struct dicom_input {
     snow_context *context;
-    snow_seekable *store; /* of images without a path */
+    snow_seekable *store;       /* of images without a path */
+    dicom_image *const *images; /* all, also of other series */
+    size_t image_count;
 } dicom_input;
 
 /* Makes the volume of a stack, for a time step and box. */
@@ -480,6 +484,18 @@ snow_status snow_dicom_read_stack(const dicom_input *input,
                                   const dicom_stack *stack,
                                   const snow_volume_options *options,
                                   snow_volume_info *info, snow_volume **out);
+
+/* --- suv.c ---------------------------------------------------------------- */
+
+/* When the slices of a file were acquired: seconds since 1970, or of a day
+ * without a date; NaN if it does not say. */
+double snow_dicom_acquired(dicom_reader *reader);
+
+/* Names the unit of PET and doses, and scales PET to the one that is wanted,
+ * or says what it lacks. Errors: those of opening. */
+snow_status snow_dicom_set_unit(const dicom_input *input,
+                                const dicom_stack *stack, snow_suv wanted,
+                                snow_volume_info *info);
 
 /* --- copies.c ------------------------------------------------------------- */
 

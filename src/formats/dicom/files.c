@@ -285,7 +285,7 @@ static snow_status read_chosen(collection *c, snow_seekable *store,
                                const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
     size_t taken = 0;
-    const dicom_input input = {c->context, store};
+    const dicom_input input = {c->context, store, c->images, c->image_count};
     choice all = {.c = c};
     all.groups =
         snow_allocate_array(c->context, c->frame_count, sizeof *all.groups);
@@ -448,7 +448,7 @@ static snow_status read_with_siblings(collection *c, snow_source *source,
                                       const snow_volume_options *options,
                                       snow_volume_info *info, snow_volume **out,
                                       bool *done) {
-    const dicom_input input = {c->context, store};
+    const dicom_input input = {c->context, store, c->images, c->image_count};
     const dicom_frame alone = c->frames[0];
     snow_folder files;
     dicom_stack stack;

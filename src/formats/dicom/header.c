@@ -251,6 +251,7 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
     words(reader, 0x0008103e, image.description, sizeof image.description);
     snow_dicom_text(reader, 0x00281054, image.rescale_type,
                     sizeof image.rescale_type);
+    image.acquired = snow_dicom_acquired(reader);
     read_padding(reader, &image);
     image.more = snow_dicom_count_more(reader, &image);
     SNOW_TRY(snow_dicom_check_sizes(context, reader, &image));
@@ -304,6 +305,15 @@ static void seek_offsets(dicom_reader *reader, int64_t frames) {
         reader->offsets = list;
 }
 
+/* Offsets in mm are from the first frame, or places along z if the first is not
+ * 0 (C.8.8.3.2). */
+static double way_of(const double *offsets, const dicom_frame *frame) {
+    const double way = offsets[frame->number] - offsets[0];
+    double normal[3];
+    snow_dicom_normal(frame, normal);
+    return offsets[0] != 0 && normal[2] < 0 ? -way : way;
+}
+
 /* The position of a frame relative to the first.  Only offsets in mm need no
  * slice distance. */
 static double offset_of(dicom_reader *reader, const dicom_image *image,
@@ -311,7 +321,7 @@ static double offset_of(dicom_reader *reader, const dicom_image *image,
     if (reader->offset_in == DICOM_UNSOUGHT)
         seek_offsets(reader, image->frames);
     if (reader->offset_in == DICOM_MM)
-        return reader->offsets[frame->number];
+        return way_of(reader->offsets, frame);
     if (frame->depth == 0) {
         frame->depth = 1;
         frame->guessed = true;

@@ -463,6 +463,7 @@ static snow_status describe_stack(const dicom_input *input,
          (d->scales || first->intercept != 0));
     memcpy(info->window, first[stack->places / 2 * stack->times].window,
            sizeof info->window);
+    SNOW_TRY(snow_dicom_set_unit(input, stack, options->suv, info));
     SNOW_TRY(warn_lost(context, stack));
     warn_about_volume(context, stack, snow_spacing_given(options));
     snow_channels_begin(info, image->samples, false);
