@@ -475,6 +475,9 @@ for name, seconds, tags in (
         ("an empty date and time", 3600, {"RadiopharmaceuticalStartDateTime": ""}),
         ("a fraction", 3599.25, {
             "RadiopharmaceuticalStartTime": "091500.750000"}),
+        ("forms of before 1993", 3600, {
+            "SeriesDate": "2024.01.05", "SeriesTime": "10:15:00",
+            "AcquisitionDate": None, "AcquisitionTime": None}),
         ("minutes alone", 3600, {"RadiopharmaceuticalStartTime": "0915"}),
         ("ADMIN", 0, {"DecayCorrection": "ADMIN"}),
         ("GE", 2700, {**LATER, "private": (
@@ -485,6 +488,12 @@ for name, seconds, tags in (
     pet_is(name, 70000 / (3.5e8 * 2 ** (-seconds / 6586.2)))
 pet_is("one slice of them", 70000 / (3.5e8 * 2 ** (-3600 / 6586.2)),
        path="pet/s_1.dcm", note="is one of 3 slices")
+write("frames.dcm", image(
+    ACTIVITY, rising[0], SpacingBetweenSlices=2, SharedFunctionalGroupsSequence=[
+        holds(RadiopharmaceuticalInformationSequence=[holds(**DRUG)])],
+    **{**PET, "RescaleSlope": 0.5, "AcquisitionTime": "101500"}))
+pet_is("frames of one file", 70000 / (3.5e8 * 2 ** (-3600 / 6586.2)),
+       path="frames.dcm", voxels=ACTIVITY * 0.5)
 PHILIPS = (0x7053, "Philips PET Private Group")
 FACTOR = 70000 / (3.5e8 * 2 ** (-3600 / 6586.2))
 for name, factor, tags in (

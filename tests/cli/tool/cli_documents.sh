@@ -49,7 +49,7 @@ for i in 0001 0002 0003; do
     "$tool" render phantom:shells --dims 16x16x16 -q -s 16x16 -o slices/ct_$i.png || exit 1
 done
 
-cp -r slices dicom_folder
+cp -r slices dicom_folder && cp -r slices pet_folder
 "$tool" convert slices -q -o mask.nrrd && mv mask.nrrd seg.dcm || exit 1
 
 # What simulations write (docs/simulations.md): a series of three steps in each
