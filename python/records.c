@@ -210,15 +210,6 @@ static const char *endian_at(int n) {
                                    : NULL;
 }
 
-static const char *suv_at(int n) {
-    return n == SNOW_SUV_AUTO   ? "auto"
-           : n == SNOW_SUV_BW   ? "bw"
-           : n == SNOW_SUV_LBM  ? "lbm"
-           : n == SNOW_SUV_BSA  ? "bsa"
-           : n == SNOW_SUV_NONE ? "none"
-                                : NULL;
-}
-
 static const char *domain_at(int n) {
     return n == SNOW_DOMAIN_RANGE ? "range" : NULL;
 }
@@ -285,7 +276,7 @@ static const field option_fields[] = {
     OPTION(each_time, 'b'),
     OPTION(each_channel, 'b'),
     OPTION(levels, 'l'),
-    ENUM(snow_volume_options, suv, suv_at, NULL),
+    OPTION(suv, 's'),
 };
 
 #define LOOK(name, kind) FIELD(snow_look, name, kind)

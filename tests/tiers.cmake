@@ -68,7 +68,7 @@ set(SNOW_COSTS
     test_histogram 20 cli_again 20 test_stop 18 cli_channels 18 cli_shear_warp 17
     oracle_tiff 20 cli_interrupt 17 serve_fuzz 16 test_raycast 15 cli_render 15
     mpi_comm 14 test_insitu 14 package_site 14 oracle_orientation 13
-    serve_hostile 13 oracle_dicom 13 oracle_slice 17
+    serve_hostile 13 oracle_dicom 16 oracle_slice 17
     test_model_picture 13 cli_progress 12 oracle_seg 12 test_truth 12
     test_combine 11 package_layout 10 cli_real 10 mpi_python 10 test_modes 10
     package_pkgconfig 10 cli_matrix 10 test_channels 9 test_model_encodings 9

@@ -74,14 +74,6 @@ typedef enum snow_endian {   /* byte order of raw data */
     SNOW_ENDIAN_LITTLE,
     SNOW_ENDIAN_BIG
 } snow_endian;
-/* Unit of PET of DICOM, voxels as stored: by weight, lean mass, surface. */
-typedef enum snow_suv {
-    SNOW_SUV_AUTO = 0, /* BW where the file says what it takes */
-    SNOW_SUV_BW,
-    SNOW_SUV_LBM,
-    SNOW_SUV_BSA,
-    SNOW_SUV_NONE /* that of the file */
-} snow_suv;
 /* Labels of a mask, both ends included; the most ranges, and clip planes. */
 typedef struct snow_label_range {
     int64_t first, last;
@@ -115,7 +107,7 @@ typedef struct snow_volume_options {
     const char *label_table; /* path: names and colours of labels; or NULL */
     bool each_channel, time_given; /* no warning of others: channels, steps */
     int64_t levels; /* of refinement, so many of the coarsest; 0: all */
-    snow_suv suv;   /* of PET */
+    const char *suv; /* PET: "bw", "lbm", "bsa", "none"; NULL: bw, if known */
 } snow_volume_options;
 SNOW_RECORD(snow_volume_options);
 /* Opens a file (format by its first bytes, then its name; gzip is undone), "-"
@@ -197,8 +189,7 @@ SNOW_API snow_status snow_volume_convert(const snow_volume *volume,
 SNOW_API snow_status snow_volume_mask(const snow_volume *volume,
     const snow_volume *mask, const snow_label_range *labels, size_t count,
     snow_volume **out);
-/* The same where a x + b y + c z > d for any of `count` planes a, b, c, d of
- * the world, of at most SNOW_CLIPS_MAX. */
+/* The same where a x + b y + c z > d for any of up to SNOW_CLIPS_MAX planes. */
 SNOW_API snow_status snow_volume_clip(const snow_volume *volume,
     const double *planes, size_t count, snow_volume **out);
 

@@ -26,9 +26,6 @@ const char *name_of_input(const char *path);
 /* The options that describe an input, as the library takes them; the look's
  * texts stay those of the options. */
 snow_volume_options data_options(const options *opts);
-
-/* The unit of PET that was asked for. */
-snow_suv options_suv(const options *opts);
 snow_look look_options(const options *opts);
 
 /* Of projections and slices. */

@@ -10,19 +10,14 @@
 #include <stdio.h>
 #include <string.h>
 
-snow_suv options_suv(const options *opts) {
-    return opts->suv ? (snow_suv)(SNOW_SUV_BW + option_choice("suv", opts->suv))
-                     : SNOW_SUV_AUTO;
-}
-
 /* Data values stay as the file has them where they are not shown in colours. */
-static snow_suv suv_of(const options *opts) {
+static const char *suv_of(const options *opts) {
     static const char *const kept[] = {"mean", "sum", "slice"};
     bool values = opts->one_channel;
     for (size_t i = 0; i < sizeof kept / sizeof *kept && opts->output; i++)
         values |= strcmp(opts->mode, kept[i]) == 0 &&
                   snow_image_format_bits(opts->output) == 0;
-    return values && !opts->suv ? SNOW_SUV_NONE : options_suv(opts);
+    return values && !opts->suv ? "none" : opts->suv;
 }
 
 /* Values that were not given stay 0.  The library refuses options that do not

@@ -251,7 +251,7 @@ static int open_step(const options *opts, snow_context *context,
                                 .labels =
                                     opts->overlay_picks ? opts->labels : NULL,
                                 .label_table = opts->label_table,
-                                .suv = options_suv(opts),
+                                .suv = opts->suv,
                                 .each_time = true};
     snow_volume_info info;
     snow_volume_info_init(&info);

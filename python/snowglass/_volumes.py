@@ -113,7 +113,7 @@ class Volume(_snowglass.Volume):
         if spacing is not None and not hasattr(spacing, "__len__"):
             fields["spacing"] = (spacing,) * 3
         for name in ("mask", "label_table", "dataset", "series", "labels",
-                     "component"):
+                     "component", "suv"):
             if fields.get(name) is not None:
                 fields[name] = os.fsencode(fields[name]) \
                     if name in ("mask", "label_table") else str(fields[name])

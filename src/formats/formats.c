@@ -46,6 +46,13 @@ static snow_status check_options(snow_context *context,
                          "--levels: %lld is not a number of levels; give at "
                          "least 1, or 0 for all",
                          (long long)options->levels);
+    if (options->suv && strcmp(options->suv, "bw") != 0 &&
+        strcmp(options->suv, "lbm") != 0 && strcmp(options->suv, "bsa") != 0 &&
+        strcmp(options->suv, "none") != 0)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--suv %.64s: is no unit of PET; give bw, lbm, bsa or "
+                         "none",
+                         options->suv);
     return SNOW_STATUS_OK;
 }
 
@@ -66,8 +73,8 @@ static snow_status finish(snow_context *context, snow_status status,
         *info = snow_volume_info_of_box(given, first, given->dims);
     if (status == SNOW_STATUS_OK && volume)
         volume->info = *info;
-    if (status == SNOW_STATUS_OK && options->suv != SNOW_SUV_AUTO &&
-        options->suv != SNOW_SUV_NONE && strcmp(given->modality, "PT") != 0)
+    if (status == SNOW_STATUS_OK && options->suv &&
+        strcmp(options->suv, "none") != 0 && strcmp(given->modality, "PT") != 0)
         snow_notify(context, "--suv: the volume is no PET in DICOM; its values "
                              "stay as they are");
     return snow_volume_give(status, volume, out);

@@ -56,8 +56,8 @@ static const char *endian_name(int value) {
 }
 
 static const char *suv_name(int value) {
-    static const char *const names[] = {"", "bw", "lbm", "bsa", "none"};
-    return of_list(names, 5, value);
+    static const char *const names[] = {"bw", "lbm", "bsa", "none"};
+    return of_list(names, 4, value);
 }
 
 static const char *fit_name(int value) {
@@ -144,7 +144,7 @@ const recipe_key recipe_keys[] = {
     TEXT("dataset", data.dataset),
     TEXT("series", data.series),
     MADE("allow-gaps", flag, data.allow_gaps, 0, 0, 0),
-    GIVEN("suv", data.suv, suv_name, NULL),
+    KNOWN("suv", data.suv, suv_name, NULL),
     MADE("levels", long, data.levels, 1, 24, 0),
     TEXT("mask", data.mask),
     MADE("labels", labels, data.labels, 0, 0, 0),

@@ -62,7 +62,7 @@ static snow_status new_stream(snow_context *context, const char *path,
                    text_bytes(options->dataset) + text_bytes(options->series) +
                    text_bytes(options->component) + text_bytes(options->mask) +
                    text_bytes(options->labels) +
-                   text_bytes(options->label_table);
+                   text_bytes(options->label_table) + text_bytes(options->suv);
     snow_stream *stream = snow_allocate_clear(context, bytes);
     if (!stream)
         return SNOW_STATUS_NO_MEMORY;
@@ -74,6 +74,7 @@ static snow_status new_stream(snow_context *context, const char *path,
     stream->options.mask = keep(options->mask, &at);
     stream->options.labels = keep(options->labels, &at);
     stream->options.label_table = keep(options->label_table, &at);
+    stream->options.suv = keep(options->suv, &at);
     stream->path = at;
     keep(path, &at);
     stream->slab_bytes = slab_bytes ? slab_bytes : SNOW_SLAB_BYTES;

@@ -491,10 +491,10 @@ snow_status snow_dicom_read_stack(const dicom_input *input,
  * without a date; NaN if it does not say. */
 double snow_dicom_acquired(dicom_reader *reader);
 
-/* Names the unit of PET and doses, and scales PET to the one that is wanted,
- * or says what it lacks. Errors: those of opening. */
+/* Names the unit of PET and doses, and scales PET to the one that is wanted (as
+ * in options), or says what it lacks. Errors: those of opening. */
 snow_status snow_dicom_set_unit(const dicom_input *input,
-                                const dicom_stack *stack, snow_suv wanted,
+                                const dicom_stack *stack, const char *wanted,
                                 snow_volume_info *info);
 
 /* --- copies.c ------------------------------------------------------------- */

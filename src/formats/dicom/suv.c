@@ -139,6 +139,8 @@ double snow_dicom_acquired(dicom_reader *reader) {
 
 /* --- PET ------------------------------------------------------------------ */
 
+typedef enum suv { BY_WEIGHT, BY_LEAN_MASS, BY_SURFACE } suv;
+
 /* A file of the series; what it lacks for SUV, once that is known. */
 typedef struct scan {
     dicom_reader *reader;
@@ -235,14 +237,14 @@ static double dose(scan *s) {
 
 /* What the dose is spread over: g of weight, of lean mass (James), cm^2 of
  * surface (Du Bois). */
-static double body(scan *s, snow_suv unit) {
+static double body(scan *s, suv unit) {
     const double weight =
         positive(s, OWN(0x00101030), "PatientWeight (0010,1030) above 0");
-    if (unit == SNOW_SUV_BW)
+    if (unit == BY_WEIGHT)
         return 1000 * weight;
     const double height =
         100 * positive(s, OWN(0x00101020), "PatientSize (0010,1020) above 0");
-    if (unit == SNOW_SUV_BSA)
+    if (unit == BY_SURFACE)
         return 71.84 * pow(weight, 0.425) * pow(height, 0.725);
     const bool male = has_value(s->reader, OWN(0x00100040), "M");
     if (!male && !has_value(s->reader, OWN(0x00100040), "F"))
@@ -261,14 +263,11 @@ static double philips(scan *s, uint32_t tag) {
                      private_at(s->reader, "Philips PET Private Group", tag));
 }
 
-/* SUV of a data value; *unit is that of the file where it is SUV, else the one
- * that is wanted. */
-static double suv_of(scan *s, const char *units, snow_suv *unit) {
-    const bool automatic = *unit == SNOW_SUV_AUTO;
+/* SUV of a data value; *unit is the one that is wanted, or else that of a file
+ * that is of SUV. */
+static double suv_of(scan *s, const char *units, bool automatic, suv *unit) {
     char type[MOST_TEXT];
     double factor;
-    if (automatic)
-        *unit = SNOW_SUV_BW;
     if (has_value(s->reader, OWN(0x00541000), "REPROJECTION") ||
         has_value(s->reader, OWN(0x00080008), "PROJECTION IMAGE") ||
         has_value(s->reader, OWN(0x00080008), "MIP"))
@@ -276,16 +275,16 @@ static double suv_of(scan *s, const char *units, snow_suv *unit) {
                    "(0054,1000) says that these are not";
     if (!strcmp(units, "GML")) {
         text_at(s->reader, OWN(0x00541006), type);
-        const snow_suv own = !strncmp(type, "LBM", 3) ? SNOW_SUV_LBM
-                             : !strcmp(type, "BSA")   ? SNOW_SUV_BSA
-                                                      : SNOW_SUV_BW;
+        const suv own = !strncmp(type, "LBM", 3) ? BY_LEAN_MASS
+                        : !strcmp(type, "BSA")   ? BY_SURFACE
+                                                 : BY_WEIGHT;
         if (automatic || *unit == own) {
             *unit = own;
             return 1;
         }
-        if (own != SNOW_SUV_BW)
+        if (own != BY_WEIGHT)
             s->lacks = "SUVType (0054,1006) BW";
-        return body(s, *unit) / body(s, SNOW_SUV_BW);
+        return body(s, *unit) / body(s, BY_WEIGHT);
     }
     if (!has_value(s->reader, OWN(0x00280051), "ATTN"))
         s->lacks = "ATTN in CorrectedImage (0028,0051)";
@@ -294,9 +293,9 @@ static double suv_of(scan *s, const char *units, snow_suv *unit) {
     if (!strcmp(units, "BQML"))
         return body(s, *unit) / dose(s);
     if (!strcmp(units, "CNTS") && (factor = philips(s, 0x70531000)) > 0)
-        return *unit == SNOW_SUV_BW
+        return *unit == BY_WEIGHT
                    ? factor
-                   : factor * body(s, *unit) / body(s, SNOW_SUV_BW);
+                   : factor * body(s, *unit) / body(s, BY_WEIGHT);
     if (!strcmp(units, "CNTS") && (factor = philips(s, 0x70531009)) > 0)
         return factor * body(s, *unit) / dose(s);
     s->lacks = "Units (0054,1001) BQML or GML, or CNTS with a factor of "
@@ -304,9 +303,10 @@ static double suv_of(scan *s, const char *units, snow_suv *unit) {
     return NAN;
 }
 
-static void set_pet(snow_context *context, scan *s, snow_suv wanted,
+static void set_pet(snow_context *context, scan *s, const char *wanted,
                     snow_volume_info *info) {
-    static const char *const names[] = {"", "SUVbw", "SUVlbm", "SUVbsa"};
+    static const char *const names[] = {"SUVbw", "SUVlbm", "SUVbsa"};
+    suv unit = BY_WEIGHT;
     char units[MOST_TEXT];
     text_at(s->reader, OWN(0x00541001), units);
     const char *said = !strcmp(units, "BQML")   ? "Bq/ml"
@@ -314,17 +314,19 @@ static void set_pet(snow_context *context, scan *s, snow_suv wanted,
                        : !strcmp(units, "GML")  ? "g/ml"
                                                 : "";
     strcpy(info->value_unit, said);
-    if (wanted == SNOW_SUV_NONE)
+    if (wanted && !strcmp(wanted, "none"))
         return;
-    const double factor = suv_of(s, units, &wanted);
+    while (wanted && unit < BY_SURFACE && strcmp(names[unit] + 3, wanted) != 0)
+        unit++;
+    const double factor = suv_of(s, units, !wanted, &unit);
     if (!s->lacks && !(factor > 1e-30 && factor < 1e30))
         s->lacks = "numbers that a body and a dose can have";
     if (s->lacks) {
         snow_notify(context, "its values stay as stored%s%s: %s needs %s",
-                    *said ? ", in " : "", said, names[wanted], s->lacks);
+                    *said ? ", in " : "", said, names[unit], s->lacks);
         return;
     }
-    strcpy(info->value_unit, names[wanted]);
+    strcpy(info->value_unit, names[unit]);
     info->slope *= factor;
     info->intercept *= factor;
     for (int i = 0; i < 2; i++)
@@ -345,7 +347,7 @@ static double earliest_of(const dicom_input *input, const dicom_stack *stack) {
 }
 
 snow_status snow_dicom_set_unit(const dicom_input *input,
-                                const dicom_stack *stack, snow_suv wanted,
+                                const dicom_stack *stack, const char *wanted,
                                 snow_volume_info *info) {
     const dicom_image *image = stack->frames->image;
     const bool pet = !strcmp(image->modality, "PT");
