@@ -6,8 +6,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Coordinates are often written as floats: steps may differ by this share. */
+/* Coordinates are often written as floats: they may lie this share of a step
+ * away from where even ones do.  With a note they may do so by more, as
+ * Gaussian latitudes do. */
 #define EVEN 1e-3
+#define NEARLY_EVEN 0.05
 
 /* Lengths get their usual names; degrees east and degrees north are one unit
  * here; others stay. */
@@ -83,6 +86,37 @@ static bool is_down(const cf_attributes *says) {
                            : is_any_of(says->units, pressures);
 }
 
+/* How far coordinates are at most from even ones: a share of the shorter step
+ * beside them. */
+static double departure(const double *at, int64_t count, double first,
+                        double step) {
+    double most = 0;
+    for (int64_t i = 0; i < count; i++) {
+        const double before = i ? fabs(at[i] - at[i - 1]) : INFINITY,
+                     behind =
+                         i < count - 1 ? fabs(at[i + 1] - at[i]) : INFINITY,
+                     away = fabs(at[i] - first - step * (double)i);
+        most = fmax(most, away > 0 ? away / fmin(before, behind) : 0);
+        if (!isfinite(away))
+            return INFINITY;
+    }
+    return most;
+}
+
+/* Fits a line to the coordinates, by least squares. */
+static void fit(const double *at, int64_t count, double *first, double *step) {
+    const double middle = (double)(count - 1) / 2;
+    double sum = 0, moment = 0, square = 0;
+    for (int64_t i = 0; i < count; i++) {
+        const double from = (double)i - middle;
+        sum += at[i] - at[0];
+        moment += from * (at[i] - at[0]);
+        square += from * from;
+    }
+    *step = moment / square;
+    *first = at[0] + sum / (double)count - *step * middle;
+}
+
 void snow_cf_measure(double *coordinates, int64_t count,
                      const cf_attributes *says, cf_axis *out) {
     *out = (cf_axis){.even = true, .coordinates = coordinates};
@@ -95,13 +129,17 @@ void snow_cf_measure(double *coordinates, int64_t count,
     if (!isfinite(first) || !isfinite(step) || step == 0)
         return;
     out->given = true;
+    out->departs = departure(coordinates, count, first, step);
+    if (out->departs > EVEN) {
+        double nearly[2];
+        fit(coordinates, count, &nearly[0], &nearly[1]);
+        out->departs = departure(coordinates, count, nearly[0], nearly[1]);
+        out->even = out->departs <= NEARLY_EVEN;
+        first = out->even ? nearly[0] : first;
+        step = out->even ? nearly[1] : step;
+    }
     out->first = first;
     out->step = step;
-    for (int64_t i = 1; i < count; i++) {
-        double gap = coordinates[i] - coordinates[i - 1];
-        if (!(fabs(gap - step) <= EVEN * fabs(step)))
-            out->even = false;
-    }
     out->uneven = !out->even && snow_uneven_fits(coordinates, count);
 }
 
@@ -151,6 +189,11 @@ static void place_axis(snow_context *context, const cf_axis axes[3], int i,
                     "coordinates along %c neither rise nor fall throughout; "
                     "their mean distance, %g, is used",
                     "xyz"[i], axis -> step);
+    if (axis->even && axis->departs > EVEN && !given)
+        snow_notify(context,
+                    "coordinates along %c depart from even ones by %.2g %% of "
+                    "a step at most; even ones are used",
+                    "xyz"[i], 100 * axis -> departs);
     if (axis->given && !same && info->dims[i] > 1 && !given)
         snow_notify(context,
                     "%c has another unit than x (\"%s\"); the spacing of x "

@@ -16,10 +16,11 @@
 /* The coordinates along an axis. */
 typedef struct cf_axis {
     bool given;
-    bool even;   /* neighbours are equally spaced */
+    bool even;   /* neighbours are equally spaced, as nearly as matters */
     bool uneven; /* they are not, but rise or fall throughout */
     bool down;   /* they grow downward, as depths and pressures do */
     double first, step;
+    double departs;      /* of an even axis: at most so much of a step */
     double *coordinates; /* all of them; NULL: none */
     char unit[64], calendar[24];
 } cf_axis;
@@ -44,7 +45,8 @@ typedef struct cf_attribute {
 typedef struct cf_attributes {
     char units[64], long_name[65], standard_name[64], axis[16];
     char calendar[24], positive[8];
-    int sign; /* _Unsigned: 1 is true, -1 false, 0 not given */
+    bool codes; /* flag_values, flag_masks */
+    int sign;   /* _Unsigned: 1 is true, -1 false, 0 not given */
     double scale, offset;
     /* _FillValue, missing_value, valid_range, valid_min, valid_max */
     cf_attribute limits[5];
@@ -70,8 +72,10 @@ typedef struct cf_values {
     int fills;
     cf_number least, most; /* valid values, if they are limited */
     bool limited;
-    bool rare; /* the only fill value is one that few integers have, and nobody
-                  gave it: they stay integers unless they have it */
+    bool codes; /* values that are not between each other: flags, and integers
+                   without a scale */
+    bool rare;  /* the only fill value is one that few integers have, and nobody
+                   gave it: they stay integers unless they have it */
 } cf_values;
 
 cf_values snow_cf_values_default(snow_type type);

@@ -1,5 +1,6 @@
 """Grids with uneven coordinates, written by netCDF4, h5py and VTK: every voxel of
-the even grid has the value of an analytic field at its place in the world."""
+the even grid has the value of an analytic field at its place in the world or,
+where it is the nearest to a line of the file, the value of that."""
 import oracle
 from oracle import np, affine
 
@@ -18,7 +19,7 @@ def on_grid(x, y, z):
 
 
 X = np.cumsum(np.linspace(1, 3, 12))
-Y = np.array([-4, -3.9, -3.5, -2, 0, 1, 1.5, 1.75, 2])
+Y = np.array([-4, -3.9, -3.5, -2, 0, 1, 1.5, 1.7, 2])
 Z = np.array([0, 1, 3, 7, 15, 31.])
 
 
@@ -34,7 +35,19 @@ def netcdf(path, axes, kind="f4", form="NETCDF4", **how):
     return file, file.createVariable("t", kind, tuple(axes), **how)
 
 
-def check(path, options=(), wanted=None, tolerance=2e-4, name=None):
+def nearest(at, lines):
+    """Places along an axis; of the voxel nearest to a line that of the line."""
+    nodes = np.unique(at.round(9))
+    moved = dict(zip(nodes, nodes))
+    for line in lines:
+        node = nodes[np.abs(nodes - line).argmin()]
+        if abs(node - line) <= np.diff(nodes).max(initial=0) * 0.501:
+            moved[node] = line
+    return np.vectorize(moved.get)(at.round(9))
+
+
+def check(path, options=(), wanted=None, tolerance=2e-4, name=None,
+          axes=(X, Y, Z)):
     """The voxels have the field's values where the matrix says they are."""
     name = name or path
     values, matrix = oracle.voxels_of(path, options)
@@ -42,7 +55,8 @@ def check(path, options=(), wanted=None, tolerance=2e-4, name=None):
         return
     if wanted is not None and values.shape != wanted:
         oracle.fail(name, f"shape {values.shape}, not {wanted}")
-    error = np.abs(values - field(*oracle.world(values, matrix))).max()
+    places = map(nearest, oracle.world(values, matrix), axes)
+    error = np.abs(values - field(*places)).max()
     if not error < tolerance:
         oracle.fail(name, f"differs from the field by {error}")
 
@@ -54,9 +68,69 @@ for form in ("NETCDF3_CLASSIC", "NETCDF4"):
                          form=form)
         with file:
             v[:] = on_grid(x, y, z)
-        check("a.nc", wanted=(32, 61, 21 if x is X else 12), name=form)
-        check("a.nc", ["--crop", "2:9,1:40,5:20"], (15, 39, 7), name=form)
+        check("a.nc", wanted=(32, 61, 21 if x is X else 12), name=form,
+              axes=(x, y, z))
+        check("a.nc", ["--crop", "2:9,1:40,5:20"], (15, 39, 7), name=form,
+              axes=(x, y, z))
 oracle.says("uneven levels", "a.nc", "are not evenly spaced")
+
+
+def levels(path, at, values, kind="f4", name="depth", **says):
+    """A file with values along one axis."""
+    with netCDF4.Dataset(path, "w") as file:
+        for axis, places in (("x", np.arange(4.)), ("y", np.arange(5.)),
+                             (name, at)):
+            file.createDimension(axis, len(places))
+            file.createVariable(axis, "f8", (axis,))[:] = places
+        v = file.createVariable("v", kind, (name, "y", "x"),
+                                fill_value=says.pop("_FillValue", None))
+        v.setncatts(says)
+        v.set_auto_scale(False)
+        v[:] = values
+
+
+# An ocean's levels are too many for the smallest step: peaks stay, and a box has
+# the values of the whole.
+OCEAN = np.concatenate([np.arange(0, 13, 2), np.arange(15, 51, 5),
+                        np.arange(60, 101, 10), [125, 150, 200, 300, 500, 1000, 3000, 5000.]])
+for turn in (1, -1):
+    a = oracle.sample("f4", (1, 5, 4)) * np.exp(-OCEAN / 9)[:, None, None].astype("f4")
+    a[2, 1, 1], a[9, 2, 2] = 999, -999
+    levels("o.nc", OCEAN[::turn], a[::turn])
+    oracle.says("an ocean", "o.nc", "fall together")
+    values, matrix = oracle.voxels_of("o.nc")
+    if (values.min(), values.max()) != (-999, 999) or len(values) != 8 * len(OCEAN):
+        oracle.fail("an ocean", f"{values.shape} {values.min()} {values.max()}")
+    for first in (0, 3, 218):
+        part, _ = oracle.voxels_of("o.nc", ["--crop", f":,:,{first}:{first + 5}"])
+        if not np.array_equal(part, values[first:first + 5]):
+            oracle.fail("an ocean", f"the box from {first} differs")
+for at, kind, says, wanted in (
+        ([0, 10, 20, 30, 50, 75, 100, 125, 150, 200.], "i1", {"_FillValue": -100}, {1, 58}),
+        ([0, 1, 3, 6, 10.], "f4", {"flag_values": [1., 58.]}, {1, 58}),
+        ([0, 2, 4, 6, 8, 10, 500.], "u2", {}, {1, 58})):
+    levels("o.nc", at, np.where(np.arange(len(at)) < 4, 1, 58)[:, None, None],
+           kind, **says)
+    values, _ = oracle.voxels_of("o.nc")
+    if set(np.unique(values)) != wanted:
+        oracle.fail("codes", f"{kind} {says} {np.unique(values)}")
+levels("o.nc", [0, 1, 3.], np.array([0, 4, 8])[:, None, None], "i2",
+       scale_factor=0.5)
+oracle.tells("o.nc", sum=180.0)  # 0, 2, 3 and 4 in twenty columns
+
+# Gaussian latitudes and longitudes of float32 are even, other steps are not.
+for at, even in ((np.degrees(np.arcsin(np.polynomial.legendre.leggauss(64)[0])), True),
+                 ((np.arange(3600) * 0.001 + 356).astype("f4"), True),
+                 (np.arange(40) + 0.001 * np.arange(40) ** 2, False)):
+    levels("o.nc", at, np.arange(len(at))[:, None, None], name="lat")
+    values, matrix = oracle.voxels_of("o.nc")
+    fitted = np.polyfit(np.arange(len(at)), at, 1)
+    if even and (len(values) != len(at) or
+                 not np.allclose(matrix[2, 2:], fitted, rtol=1e-9)) or \
+            not even and len(values) == len(at):
+        oracle.fail("nearly even", f"{at[:3]} {values.shape} {matrix[2]}")
+    oracle.says("nearly even", "o.nc",
+                "depart from even ones" if even else "not evenly spaced")
 
 # Packed integers with missing values, which end half-way to their neighbours.
 file, v = netcdf("a.nc", {"z": (Z, ""), "y": (Y, ""), "x": (X, "")}, "i2",
@@ -71,6 +145,7 @@ missing = np.isnan(values)
 if set(np.unique(at[2][missing])) != {2, 3, 4}:
     oracle.fail("missing", f"levels {np.unique(at[2][missing])}")
 whole = ~missing & ((at[2] <= 1) | (at[2] >= 7))
+at = [*map(nearest, at, (X, Y, Z))]
 if np.abs(values - field(*at))[whole].max() > 0.0051:
     oracle.fail("packed", "differs from the field")
 
@@ -109,6 +184,7 @@ def rectilinear(cells):
 
 
 for cells in (False, True):
+    axes = [(at[1:] + at[:-1]) / 2 if cells else at for at in (X, Y, Z)]
     for mode in ("Ascii", "Binary", "Appended"):
         for packed in oracle.few((False, True), 2, len(mode) + cells):
             writer = vtk.vtkXMLRectilinearGridWriter()
@@ -119,16 +195,16 @@ for cells in (False, True):
                 writer.SetCompressorTypeToNone()
             writer.SetEncodeAppendedData(not packed)
             assert writer.Write()
-            check("a.vtr", name=f"{mode} packed {packed} cells {cells}")
-            check("a.vtr", ["--crop", "2:9,1:8,5:12"], (7, 7, 7))
+            check("a.vtr", name=f"{mode} packed {packed} cells {cells}", axes=axes)
+            check("a.vtr", ["--crop", "2:9,1:8,5:12"], (7, 7, 7), axes=axes)
     for kind in ("ASCII", "Binary"):
         writer = vtk.vtkRectilinearGridWriter()
         writer.SetFileName("a.vtk")
         writer.SetInputData(rectilinear(cells))
         getattr(writer, "SetFileTypeTo" + kind)()
         assert writer.Write()
-        check("a.vtk", name=f"legacy {kind} cells {cells}")
-check(oracle.packed("a.vtr", "b.vtr.gz"))
+        check("a.vtk", name=f"legacy {kind} cells {cells}", axes=axes)
+check(oracle.packed("a.vtr", "b.vtr.gz"), axes=axes)
 oracle.refuse(oracle.put("b.vtk", oracle.got("a.vtk").replace(
     b"Y_COORDINATES 9", b"Y_COORDINATES 8")), "not valid in this place")
 oracle.finish()

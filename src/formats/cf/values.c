@@ -17,11 +17,10 @@
 enum { FILL, MISSING, RANGE, LEAST, MOST, LIMITS };
 
 const char *const snow_cf_names[] = {
-    "_FillValue",  "missing_value", "valid_range",   "valid_min",
-    "valid_max",   "scale_factor",  "add_offset",    "_Unsigned",
-    "units",       "unit",          "standard_name", "long_name",
-    "description", "axis",          "calendar",      "positive",
-    NULL};
+    "_FillValue",    "missing_value", "valid_range", "valid_min", "valid_max",
+    "scale_factor",  "add_offset",    "_Unsigned",   "units",     "unit",
+    "standard_name", "long_name",     "description", "axis",      "calendar",
+    "positive",      "flag_values",   "flag_masks",  NULL};
 
 /* --- what a file says ----------------------------------------------------- */
 
@@ -79,6 +78,7 @@ void snow_cf_take(const char *name, const cf_attribute *given,
         out->scale = first;
     if (!strcmp(name, "add_offset") && given->count == 1 && isfinite(first))
         out->offset = first;
+    out->codes |= !strncmp(name, "flag_", 5);
     out->any |= !strcmp(name, "scale_factor") || !strcmp(name, "add_offset") ||
                 !strcmp(name, "_FillValue") || !strcmp(name, "missing_value") ||
                 !strcmp(name, "standard_name");
@@ -93,6 +93,7 @@ static bool is_integer(snow_type type) {
 cf_values snow_cf_values_default(snow_type type) {
     return (cf_values){.type = type,
                        .scale = 1,
+                       .codes = is_integer(type),
                        .least = {-INFINITY, (uint64_t)INT64_MIN},
                        .most = {INFINITY, INT64_MAX}};
 }
@@ -169,6 +170,8 @@ cf_values snow_cf_settle(snow_context *context, const cf_attributes *from,
     cf_number n[CF_MOST_NUMBERS];
     out.scale = from->scale;
     out.offset = from->offset;
+    out.codes = from->codes ||
+                (is_integer(type) && from->scale == 1 && from->offset == 0);
     /* Integers of NetCDF's old versions are signed, bytes of HDF4 unsigned. */
     if (is_integer(type) && from->sign)
         out.type = snow_type_of_integer(snow_type_size(type), from->sign < 0);
@@ -383,5 +386,7 @@ snow_status snow_cf_read(snow_context *context, const snow_uneven *grid,
                          const snow_volume_options *options,
                          snow_volume_info *info, snow_volume **out) {
     stored_values s = {values, read, user};
-    return snow_uneven_read(context, grid, options, read_data, &s, info, out);
+    snow_uneven own = *grid;
+    own.codes = values->codes;
+    return snow_uneven_read(context, &own, options, read_data, &s, info, out);
 }

@@ -5,12 +5,14 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Voxels of an even grid, unless the file has more: a single narrow step must
- * not make a small file a huge one.  At most so many, and so many for each of
- * the file's, of which a small file may have more. */
-#define MOST_VOXELS 0x1p29
-#define MOST_GROWTH 64
-#define SMALL_VOXELS 0x1p22
+/* An even grid has at most so many times the file's voxels, along each axis and
+ * in all, and so many bytes more: a single narrow step must not make a small
+ * file a huge one. */
+#define MOST_GROWTH 8
+#define SMALL_BYTES 0x1p26
+
+/* A shorter axis has no steps that can be told apart. */
+#define LEAST 0x1p-900
 
 /* Steps that differ by this share are equal. */
 #define EQUAL 1e-3
@@ -26,7 +28,8 @@ bool snow_uneven_fits(const double *coordinates, int64_t count) {
                         : !(coordinates[i] < coordinates[i - 1])))
             return false;
     }
-    return isfinite(coordinates[count - 1] - coordinates[0]);
+    const double all = fabs(coordinates[count - 1] - coordinates[0]);
+    return isfinite(all) && all > LEAST;
 }
 
 bool snow_uneven_any(const snow_uneven *grid) {
@@ -52,24 +55,49 @@ static void find_steps(const double *at, int64_t count, double *least,
     }
 }
 
-/* Voxels for the smallest step; never fewer than the file has. */
+/* The node of an even axis that is nearest to a coordinate. */
+static int64_t node_of(const double *at, double step, int64_t line) {
+    return (int64_t)floor((at[line] - at[0]) / step + 0.5);
+}
+
+/* Lines of the file that have the node of the one before; and how far the lines
+ * are from their nodes at most. */
+static int64_t count_shared(const double *at, int64_t count, double step,
+                            double *shift) {
+    int64_t shared = 0, before = -1;
+    *shift = 0;
+    for (int64_t i = 0; i < count; i++) {
+        const int64_t node = node_of(at, step, i);
+        shared += node == before;
+        before = node;
+        *shift = fmax(*shift, fabs(at[i] - at[0] - step * (double)node));
+    }
+    return shared;
+}
+
+/* Voxels for the smallest step, or a half of it where two lines would share a
+ * node; never fewer than the file has. */
 static double wanted(const snow_uneven *grid, int axis) {
     const double *at = grid->at[axis];
     const int64_t count = grid->count[axis];
-    double least, most;
+    const double most = MOST_GROWTH * (double)count;
+    double least, longest, shift;
     if (!at)
         return (double)count;
-    find_steps(at, count, &least, &most);
+    find_steps(at, count, &least, &longest);
     double steps = ceil(fabs(at[count - 1] - at[0]) / least - EQUAL);
-    return fmin(fmax(steps + 1, (double)count), 0x1p31);
+    while (steps + 1 < most &&
+           count_shared(at, count, (at[count - 1] - at[0]) / steps, &shift))
+        steps *= 2;
+    return fmin(fmax(steps + 1, (double)count), most);
 }
 
 /* Makes the axes that grow the most shorter until all voxels are few enough. */
-static void limit(const snow_uneven *grid, double even[3]) {
+static void limit(const snow_uneven *grid, double bytes, double even[3]) {
     double most = MOST_GROWTH;
     for (int i = 0; i < 3; i++)
         most *= (double)grid->count[i];
-    most = fmin(fmax(most, SMALL_VOXELS), MOST_VOXELS);
+    most += SMALL_BYTES / bytes;
     for (;;) {
         double all = even[0] * even[1] * even[2], growth = 1;
         int axis = -1;
@@ -87,18 +115,23 @@ static void limit(const snow_uneven *grid, double even[3]) {
 
 static void note_axis(snow_context *context, const snow_uneven *grid, int axis,
                       snow_volume_info *info) {
-    double least, most, step = fabs(grid->step[axis]);
+    double least, most, shift;
+    char shared[80] = "";
     size_t used = strlen(info->storage);
-    find_steps(grid->at[axis], grid->count[axis], &least, &most);
+    const double *at = grid->at[axis], step = grid->step[axis];
+    find_steps(at, grid->count[axis], &least, &most);
+    const int64_t lost = count_shared(at, grid->count[axis], step, &shift);
+    if (lost)
+        snprintf(shared, sizeof shared,
+                 "; %lld fall together with others, as finer steps would be "
+                 "too many",
+                 (long long)lost);
     snow_notify(context,
                 "coordinates along %c are not evenly spaced (steps of %g to "
-                "%g); their %lld voxels are resampled to %lld, %g apart%s",
+                "%g); their %lld voxels are resampled to %lld, %g apart, each "
+                "at the nearest, at most %.2g away%s",
                 "xyz"[axis], least, most, (long long)grid -> count[axis],
-                (long long)grid -> even[axis], step,
-                step > least * (1 + EQUAL) ? ", which is coarser than the "
-                                             "smallest step; --crop takes a "
-                                             "part"
-                                           : "");
+                (long long)grid -> even[axis], fabs(step), shift, shared);
     snprintf(info->storage + used, sizeof info->storage - used,
              "%s%c: %lld uneven to %lld even", used ? ", " : "", "xyz"[axis],
              (long long)grid -> count[axis], (long long)grid -> even[axis]);
@@ -109,7 +142,8 @@ void snow_uneven_plan(snow_context *context, snow_uneven *grid,
     double even[3];
     for (int i = 0; i < 3; i++)
         even[i] = wanted(grid, i);
-    limit(grid, even);
+    limit(grid, fmax((double)snow_type_size(info->type), 1), even);
+    grid->codes = info->type < SNOW_TYPE_FLOAT32;
     for (int i = 0; i < 3; i++) {
         const double *at = grid->at[i];
         grid->even[i] = (int64_t)even[i];
@@ -123,9 +157,10 @@ void snow_uneven_plan(snow_context *context, snow_uneven *grid,
 /* --- values --------------------------------------------------------------- */
 
 /* Where a voxel of the box lies between two of the file's box: at `low` and, by
- * a share `up`, at the next. */
+ * a share `up`, at the next.  Or it has the values of `low` and of `more`
+ * behind it. */
 typedef struct place {
-    int64_t low;
+    int64_t low, more;
     double up;
 } place;
 
@@ -134,18 +169,35 @@ typedef struct axis_places {
     place *at;
     int64_t count;
     int64_t first, end; /* the file's voxels around it */
+    int64_t most;       /* of these, for one voxel */
 } axis_places;
 
-/* The last of the file's voxels, but the last one, that is not beyond
- * `position`, from `low` on. */
-static int64_t find_low(const snow_uneven *grid, int axis, double position,
-                        int64_t low) {
-    const double *at = grid->at[axis];
-    bool rises = grid->step[axis] > 0;
-    while (low < grid->count[axis] - 2 &&
-           (rises ? at[low + 1] <= position : at[low + 1] >= position))
-        low++;
-    return low;
+/* The place of a node, where `low` is the last line whose node is not beyond
+ * it.  Of codes it is a line of the file. */
+static place place_of(const snow_uneven *grid, int axis, int64_t node,
+                      int64_t low) {
+    const double *at = grid->at[axis], step = grid->step[axis];
+    const double position = at[0] + step * (double)node;
+    place p = {low, 0, 0};
+    if (node_of(at, step, low) < node) {
+        p.up = (position - at[low]) / (at[low + 1] - at[low]);
+        return grid->codes ? (place){low + (p.up >= 0.5), 0, 0} : p;
+    }
+    while (p.low > 0 && node_of(at, step, p.low - 1) == node)
+        p.low--;
+    p.more = low - p.low;
+    for (; grid->codes && p.more; p.more--)
+        if (fabs(at[low - p.more + 1] - position) < fabs(at[p.low] - position))
+            p.low = low - p.more + 1;
+    return p;
+}
+
+/* The lines of `count` that a place needs.  Those that fall together are held
+ * against the ones beside them. */
+static void span_of(place p, int64_t count, int64_t *begin, int64_t *end) {
+    *begin = p.low - (p.more && p.low);
+    *end = p.low + p.more + 1 + (p.more || p.up > 0);
+    *end = *end < count ? *end : count;
 }
 
 /* Positions are counted from the first voxel of the whole, so that all boxes
@@ -153,18 +205,22 @@ static int64_t find_low(const snow_uneven *grid, int axis, double position,
 static void find_places(const snow_uneven *grid, int axis, int64_t first,
                         axis_places *out) {
     const double *at = grid->at[axis];
-    int64_t low = 0;
+    const int64_t count = grid->count[axis];
+    int64_t low = 0, begin, end;
+    out->first = count;
+    out->end = out->most = 0;
     for (int64_t i = 0; i < out->count; i++) {
-        out->at[i] = (place){first + i, 0};
-        if (!at)
-            continue;
-        double position = at[0] + grid->step[axis] * (double)(first + i);
-        low = find_low(grid, axis, position, low);
-        double up = (position - at[low]) / (at[low + 1] - at[low]);
-        out->at[i] = (place){low, fmin(fmax(up, 0), 1)};
+        out->at[i] = (place){first + i, 0, 0};
+        while (at && low < count - 1 &&
+               node_of(at, grid->step[axis], low + 1) <= first + i)
+            low++;
+        if (at)
+            out->at[i] = place_of(grid, axis, first + i, low);
+        span_of(out->at[i], count, &begin, &end);
+        out->first = begin < out->first ? begin : out->first;
+        out->end = end > out->end ? end : out->end;
+        out->most = end - begin > out->most ? end - begin : out->most;
     }
-    out->first = out->at[0].low;
-    out->end = out->at[out->count - 1].low + (at ? 2 : 1);
     for (int64_t i = 0; i < out->count; i++)
         out->at[i].low -= out->first;
 }
@@ -174,6 +230,18 @@ static double blend(double low, double high, double up) {
     if (!isfinite(low) || !isfinite(high))
         return up < 0.5 ? low : high;
     return low + (high - low) * up;
+}
+
+/* Of values that fall together that one is kept which is farthest from those
+ * beside them, of which one may be NaN: a peak stays. */
+static double farther(double kept, double value, double before, double behind) {
+    const double usual = isfinite(before) && isfinite(behind)
+                             ? before + (behind - before) / 2
+                         : isfinite(before) ? before
+                                            : behind;
+    if (!isfinite(kept) || !isfinite(value))
+        return isfinite(value) ? value : kept;
+    return fabs(value - usual) > fabs(kept - usual) ? value : kept;
 }
 
 /* Stores a row; the values lie between those of the type. */
@@ -186,40 +254,48 @@ static void store_row(snow_type type, void *to, int64_t count, double *values) {
 typedef struct resampling {
     const snow_volume *from;
     axis_places axes[3];
-    double *rows; /* two rows of the file's box, one of the result */
+    /* lines of the file along x, for a place along y and one along z; a line of
+     * the result before it is resampled along x, and after */
+    double *lines[2], *line, *row;
 } resampling;
 
-/* Blends a row into another one. */
-static void blend_rows(double *low, const double *high, double up,
-                       int64_t count) {
-    for (int64_t i = 0; i < count; i++)
-        low[i] = blend(low[i], high[i], up);
+/* Makes a line of `width` values from those of the file, of which there are
+ * `count` in all and `from` is the first that span_of names. */
+static void mix(place p, int64_t count, int64_t width, const double *from,
+                double *out) {
+    int64_t begin, end;
+    span_of(p, count, &begin, &end);
+    const bool behind = end > p.low + p.more + 1;
+    for (int64_t i = 0; i < width; i++) {
+        const double *v = from + i + (p.low - begin) * width;
+        out[i] = p.up > 0 ? blend(v[0], v[width], p.up) : v[0];
+        for (int64_t k = 1; k <= p.more; k++)
+            out[i] =
+                farther(out[i], v[k * width], begin < p.low ? v[-width] : NAN,
+                        behind ? v[(p.more + 1) * width] : NAN);
+    }
 }
 
-/* The row at a place along y, and z as in the file. */
-static void row_along_y(const resampling *r, place y, int64_t z, double *out,
-                        double *beside) {
+/* A row at a place along y, and z as in the file. */
+static void row_along_y(const resampling *r, place y, int64_t z, double *out) {
     const int64_t *dims = r->from->info.dims;
-    const int64_t first = (z * dims[1] + y.low) * dims[0];
-    snow_volume_stored(r->from, first, (size_t)dims[0], out);
-    if (y.up > 0) {
-        snow_volume_stored(r->from, first + dims[0], (size_t)dims[0], beside);
-        blend_rows(out, beside, y.up, dims[0]);
-    }
+    int64_t begin, end;
+    span_of(y, dims[1], &begin, &end);
+    snow_volume_stored(r->from, (z * dims[1] + begin) * dims[0],
+                       (size_t)((end - begin) * dims[0]), r->lines[0]);
+    mix(y, dims[1], dims[0], r->lines[0], out);
 }
 
 static void make_row(const resampling *r, place y, place z, double *out) {
-    const int64_t width = r->from->info.dims[0];
-    double *low = r->rows, *high = low + width, *beside = high + width;
-    row_along_y(r, y, z.low, low, beside);
-    if (z.up > 0) {
-        row_along_y(r, y, z.low + 1, high, beside);
-        blend_rows(low, high, z.up, width);
-    }
+    const int64_t *dims = r->from->info.dims;
+    int64_t begin, end;
+    span_of(z, dims[2], &begin, &end);
+    for (int64_t i = begin; i < end; i++)
+        row_along_y(r, y, i, r->lines[1] + (i - begin) * dims[0]);
+    mix(z, dims[2], dims[0], r->lines[1], r->line);
     for (int64_t x = 0; x < r->axes[0].count; x++) {
-        const place at = r->axes[0].at[x];
-        out[x] = at.up > 0 ? blend(low[at.low], low[at.low + 1], at.up)
-                           : low[at.low];
+        span_of(r->axes[0].at[x], dims[0], &begin, &end);
+        mix(r->axes[0].at[x], dims[0], 1, r->line + begin, &out[x]);
     }
 }
 
@@ -229,17 +305,22 @@ static snow_status resample(resampling *r, snow_volume *to) {
     const uint64_t width = (uint64_t)r->from->info.dims[0];
     const size_t row_bytes = (size_t)dims[0] * snow_type_size(to->info.type);
     unsigned char *at = to->owned;
-    r->rows = snow_allocate_array(context, 3 * width + (uint64_t)dims[0],
-                                  sizeof *r->rows);
-    if (!r->rows)
+    const uint64_t lines =
+        (uint64_t)r->axes[1].most + (uint64_t)r->axes[2].most + 1;
+    double *block = snow_allocate_array(
+        context, lines * width + (uint64_t)dims[0], sizeof *block);
+    if (!block)
         return SNOW_STATUS_NO_MEMORY;
-    double *row = r->rows + 3 * width;
+    r->lines[0] = block;
+    r->lines[1] = r->lines[0] + (uint64_t)r->axes[1].most * width;
+    r->line = r->lines[1] + (uint64_t)r->axes[2].most * width;
+    r->row = r->line + width;
     for (int64_t z = 0; z < dims[2]; z++)
         for (int64_t y = 0; y < dims[1]; y++, at += row_bytes) {
-            make_row(r, r->axes[1].at[y], r->axes[2].at[z], row);
-            store_row(to->info.type, at, dims[0], row);
+            make_row(r, r->axes[1].at[y], r->axes[2].at[z], r->row);
+            store_row(to->info.type, at, dims[0], r->row);
         }
-    snow_release(context, r->rows);
+    snow_release(context, block);
     return SNOW_STATUS_OK;
 }
 

@@ -4,9 +4,11 @@
  *     file   |-|-|--|---|-----|----------|      coordinates, rising or falling
  *     even   |-|-|-|-|-|-|-|-|-|-|-|-|-|-|      as fine as their smallest step
  *
- * Values are linear between neighbours of the file.  Every box of the even grid
- * is read of the file's voxels around it, so that slabs and crops serve a large
- * file. */
+ * The node nearest to a line of the file has its values, so that none is lost;
+ * between such nodes values are linear between neighbours of the file, or those
+ * of the nearest line where they are codes.  If nodes are too few, some lines
+ * fall together.  Every box of the even grid is read of the file's voxels
+ * around it, so that slabs and crops serve a large file. */
 #ifndef SNOW_FORMATS_UNEVEN_H
 #define SNOW_FORMATS_UNEVEN_H
 
@@ -18,16 +20,18 @@ typedef struct snow_uneven {
     int64_t even[3];     /* voxels of the even grid */
     double step[3];      /* of the even grid, along uneven axes; may be below 0;
                             its first voxel is at[i][0] */
+    bool codes;          /* values between two of the file mean nothing */
 } snow_uneven;
 
-/* Returns whether coordinates are finite, and rise or fall throughout. */
+/* Returns whether coordinates are finite, and rise or fall throughout, not over
+ * next to nothing. */
 bool snow_uneven_fits(const double *coordinates, int64_t count);
 
 /* Returns whether any axis is uneven. */
 bool snow_uneven_any(const snow_uneven *grid);
 
 /* Chooses `even` and `step`, and notes what is resampled, also in
- * info->storage. */
+ * info->storage; integers are codes unless the caller says otherwise. */
 void snow_uneven_plan(snow_context *context, snow_uneven *grid,
                       snow_volume_info *info);
 
