@@ -28,7 +28,6 @@
  *                  ...-------'        0.25 a little above the threshold
  *   ______.....---'                   0.05 at it, 0 at the faint threshold */
 #include "transfer/look.h"
-#include "volume/field.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -331,54 +330,6 @@ static snow_status hounsfield_preset(const snow_histogram *histogram,
     return SNOW_STATUS_OK;
 }
 
-/* Floats that reach so far cannot have fractions there, as densities in SI
- * units; no scanner counts so far. */
-static bool is_beyond_fractions(const snow_histogram *histogram) {
-    const snow_type type = histogram->volume->info.type;
-    double reach = fmax(fabs(histogram->min), fabs(histogram->max));
-    return type == SNOW_TYPE_FLOAT32   ? reach >= 0x1p24
-           : type == SNOW_TYPE_FLOAT64 ? reach >= 0x1p53
-                                       : false;
-}
-
-/* Numbers with fractions where a field may be. */
-static bool is_field(const snow_histogram *histogram) {
-    return (histogram->fractions || is_beyond_fractions(histogram)) &&
-           snow_volume_may_be_field(&histogram->volume->info);
-}
-
-/* Voxels of either sign that are left out of a field's reach, as those of noise
- * and of a few sources are. */
-#define FAR 0.002
-
-/* A field is around 0 if the middle one of its values is that near to it, and
- * its weaker side reaches that far, relative to its reach. */
-#define NEAR 0.3
-#define WEAKER 0.2
-
-snow_status snow_is_signed_field(const snow_histogram *histogram,
-                                 bool *is_signed, double *reach) {
-    const double shares[3] = {FAR, 0.5, 1 - FAR};
-    double q[3];
-    SNOW_TRY(snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, shares, 3, q));
-    *reach = fmax(fabs(q[0]), fabs(q[2]));
-    if (!(*reach > 0))
-        *reach = fmax(fabs(histogram->min), fabs(histogram->max));
-    char text[40]; /* what is reported is used, as of other looks */
-    snow_text_print(text, sizeof text, "%.5g", *reach);
-    double again;
-    if (snow_parse_double(text, &again) && isfinite(again))
-        *reach = again;
-    if (!(*reach > 0))
-        *reach = 1;
-    *is_signed = is_field(histogram) && !histogram->scale.log &&
-                 fmin(-q[0], q[2]) > 0 &&
-                 snow_share_on(histogram->scale, 0, *reach,
-                               fmin(-q[0], q[2])) >= WEAKER &&
-                 snow_share_on(histogram->scale, 0, *reach, fabs(q[1])) <= NEAR;
-    return SNOW_STATUS_OK;
-}
-
 /* Whether the look is that of a field, and of one of both signs. */
 static snow_status find_field(const snow_histogram *histogram,
                               const snow_look *look,
@@ -386,7 +337,7 @@ static snow_status find_field(const snow_histogram *histogram,
                               bool *is_signed) {
     double reach;
     bool is_scan;
-    *field = is_field(histogram) && axes_of_one(histogram) == 0 &&
+    *field = snow_is_field(histogram) && axes_of_one(histogram) == 0 &&
              !look->base && !look->preset;
     if (!*field)
         return SNOW_STATUS_OK;
@@ -406,6 +357,46 @@ static snow_status build_preset(const snow_histogram *histogram, int preset,
                                         histogram, builder);
 }
 
+/* Quantiles, or those of the values times -1. */
+static snow_status quantiles_of(const snow_histogram *histogram, bool mirrored,
+                                const double *shares, size_t count,
+                                double *out) {
+    double of[3];
+    for (size_t i = 0; i < count; i++)
+        of[i] = mirrored ? 1 - shares[i] : shares[i];
+    SNOW_TRY(snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, of, count, out));
+    for (size_t i = 0; i < count && mirrored; i++)
+        out[i] = 0 - out[i];
+    return SNOW_STATUS_OK;
+}
+
+/* The split of the values times -1. */
+static snow_status split_mirrored(const snow_histogram *histogram,
+                                  snow_histogram_split *out) {
+    uint64_t counts[BINS], all;
+    SNOW_TRY(snow_count_bins(histogram, histogram->min, histogram->max, BINS,
+                             counts, &all));
+    const double there = is_left(histogram) ? share_there(histogram) : 1;
+    double padding = share_of(counts, BINS - 1, BINS, all), ends[2];
+    padding = padding > PADDING ? padding : 0;
+    const double shares[2] = {CUT_LOW, 1 - CUT_HIGH * (1 - padding)};
+    SNOW_TRY(quantiles_of(histogram, true, shares, 2, ends));
+    if (!(ends[0] < ends[1])) {
+        ends[0] = -histogram->max;
+        ends[1] = -histogram->min;
+    }
+    SNOW_TRY(
+        snow_count_bins(histogram, -ends[1], -ends[0], BINS, counts, &all));
+    for (int i = 0; i < BINS / 2; i++) {
+        const uint64_t count = counts[i];
+        counts[i] = counts[BINS - 1 - i];
+        counts[BINS - 1 - i] = count;
+    }
+    *out = (snow_histogram_split){.constant = false};
+    read_counts(counts, all, there, histogram->scale, ends[0], ends[1], out);
+    return SNOW_STATUS_OK;
+}
+
 /* A few values are left out at the top of a field. */
 #define FIELD_TOP 0.9995
 
@@ -414,49 +405,59 @@ static snow_status build_preset(const snow_histogram *histogram, int preset,
 #define MIDDLE 0.05
 
 static snow_status lower_to_middle(const snow_histogram *histogram,
-                                   const snow_histogram_split *p, double top,
-                                   double *start, double *threshold,
-                                   double *object) {
+                                   const snow_histogram_split *p, bool mirrored,
+                                   double top, double at[3]) {
     const double shares[] = {0.5, 0.75, 0.95};
     double q[3];
-    SNOW_TRY(snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, shares, 3, q));
-    if (q[0] < snow_between_on(histogram->scale, p->low, top, MIDDLE))
-        return SNOW_STATUS_OK;
-    *start = fmin(*start, q[0]);
-    *threshold = fmin(*threshold, q[1]);
-    *object = fmin(*object, q[2]);
+    SNOW_TRY(quantiles_of(histogram, mirrored, shares, 3, q));
+    for (int i = 0; i < 3 && q[0] >= snow_between_on(histogram->scale, p->low,
+                                                     top, MIDDLE);
+         i++)
+        at[i] = fmin(at[i], q[i]);
     return SNOW_STATUS_OK;
 }
 
 /* Fields have no surfaces to shade: a veil through which one sees denser parts,
  * in colours that show the values.  Where all is one cluster its lower half is
- * clear. */
+ * clear.  `p` is the split of the values, or of those times -1. */
 static snow_status build_field(const snow_histogram *histogram,
-                               const snow_histogram_split *p,
+                               const snow_histogram_split *p, bool mirrored,
                                snow_transfer_builder *builder) {
+    static const double opacities[] = {0, 0.025, 0.08, 0.5};
     const double share = FIELD_TOP;
-    double top, start, threshold = p->threshold, object = p->object;
-    SNOW_TRY(
-        snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, &share, 1, &top));
-    top = p->narrowed ? p->top : fmax(top, p->top);
-    start = p->with_faint ? p->faint
+    double top, at[4] = {0, p->threshold, p->object, 0};
+    SNOW_TRY(quantiles_of(histogram, mirrored, &share, 1, &top));
+    at[3] = top = p->narrowed ? p->top : fmax(top, p->top);
+    at[0] = p->with_faint ? p->faint
                           : snow_between_on(histogram->scale, p->background,
                                             p->threshold, 0.6);
-    if (p->fills_volume) {
-        start = snow_between_on(histogram->scale, p->low, top, 0.45);
-        threshold = snow_between_on(histogram->scale, p->low, top, 0.6);
-        object = snow_between_on(histogram->scale, p->low, top, 0.75);
-    }
-    SNOW_TRY(lower_to_middle(histogram, p, top, &start, &threshold, &object));
-    builder->name = builder->colormap = "viridis";
+    for (int i = 0; i < 3 && p->fills_volume; i++)
+        at[i] = snow_between_on(histogram->scale, p->low, top, 0.45 + 0.15 * i);
+    SNOW_TRY(lower_to_middle(histogram, p, mirrored, top, at));
+    builder->name = builder->colormap = mirrored ? "viridis_r" : "viridis";
     builder->unshaded = true;
-    builder->low = start;
-    builder->high = top;
-    snow_transfer_builder_add_opacity(builder, start, 0);
-    snow_transfer_builder_add_opacity(builder, threshold, 0.025);
-    snow_transfer_builder_add_opacity(builder, object, 0.08);
-    snow_transfer_builder_add_opacity(builder, top, 0.5);
+    builder->low = mirrored ? 0 - top : at[0];
+    builder->high = mirrored ? 0 - at[0] : top;
+    for (int i = 0; i < 4; i++) {
+        const int point = mirrored ? 3 - i : i;
+        snow_transfer_builder_add_opacity(
+            builder, mirrored ? 0 - at[point] : at[point], opacities[point]);
+    }
     return SNOW_STATUS_OK;
+}
+
+/* Below 0 a field is what stands out downward. */
+static snow_status build_any_field(const snow_histogram *histogram,
+                                   const snow_histogram_split *p,
+                                   snow_transfer_builder *builder) {
+    snow_histogram_split own = *p;
+    bool mirrored = false;
+    if (!p->narrowed)
+        SNOW_TRY(snow_is_field_below_0(histogram, &mirrored));
+    if (mirrored)
+        SNOW_TRY(split_mirrored(histogram, &own));
+    return build_field(histogram, own.constant ? p : &own,
+                       mirrored && !own.constant, builder);
 }
 
 /* Where a file without modality has a window, as NIfTI's cal_min and cal_max,
@@ -508,7 +509,7 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
         return build_preset(histogram, snow_preset_from_name("signed"),
                             ", for both signs", builder);
     if (field && !look->opacities)
-        return build_field(histogram, &p, builder);
+        return build_any_field(histogram, &p, builder);
     if (p.fills_volume && !slice && histogram->masked && is_left(histogram)) {
         /* All that is left, with its surface. */
         build_grey(builder, "light-grey", p.low, p.high, DARKEST, 1);

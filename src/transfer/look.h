@@ -157,6 +157,14 @@ snow_status snow_transfer_builder_points(const snow_look *points,
 double snow_transfer_builder_place(const snow_transfer_builder *builder,
                                    double low, double high, double share);
 
+/* Whether values have fractions, where a field may be. */
+bool snow_is_field(const snow_histogram *histogram);
+
+/* Whether they are below 0, but for a few, and rise to a background.  Errors:
+ * SNOW_STATUS_NO_MEMORY, those of the transport. */
+snow_status snow_is_field_below_0(const snow_histogram *histogram,
+                                  bool *is_below);
+
 /* Whether a field has values of both signs around 0 that matter, as velocities
  * and charges have; *reach gets how far, but for a few. */
 snow_status snow_is_signed_field(const snow_histogram *histogram,

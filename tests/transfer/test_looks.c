@@ -272,6 +272,36 @@ static void a_field_is_a_veil_in_colours(void **state) {
     assert_true(snow_transfer_is_grey(transfer));
 }
 
+static double hole(double x, double y, double z) {
+    return -blob(x, y, z);
+}
+
+static double low_hole(double x, double y, double z) {
+    return -1e-9 * (1 + 20 * blob(x, y, z)) + 1e-10 * (x > 0.98);
+}
+
+/* Charges of electrons, and potentials: what is frequent is clear, and what is
+ * lowest is bright. */
+static void a_field_below_0_stands_out_downward(void **state) {
+    static float values[SIDE * SIDE * SIDE];
+    looks_fixture *f = *state;
+    double rgba[4], up[4];
+    snow_transfer *above =
+        looks_of(f, field_of(f, values, blob), (snow_look){0});
+    snow_transfer *below =
+        looks_of(f, field_of(f, values, hole), (snow_look){0});
+    assert_true(snow_transfer_is_unshaded(below));
+    for (int n = 0; n <= 20; n++) {
+        snow_transfer_evaluate(above, n / 20.0, up);
+        snow_transfer_evaluate(below, -n / 20.0, rgba);
+        for (int c = 0; c < 4; c++)
+            assert_true(fabs(rgba[c] - up[c]) < 0.02);
+    }
+    below = looks_of(f, field_of(f, values, low_hole), (snow_look){0});
+    assert_true(looks_opacity(below, -1e-9) == 0);
+    assert_true(looks_opacity(below, -20e-9) > 0.4);
+}
+
 /* matplotlib's definitions of three maps, at all 256 entries. */
 static void maps_agree_with_their_definitions(void **state) {
     static const double rdbu[11][3] = {
@@ -767,6 +797,7 @@ int main(void) {
         LOOKS_TEST(a_field_of_both_signs_is_diverging_around_0),
         LOOKS_TEST(a_scan_in_floats_is_grey_and_shaded),
         LOOKS_TEST(a_field_is_a_veil_in_colours),
+        LOOKS_TEST(a_field_below_0_stands_out_downward),
         LOOKS_TEST(maps_agree_with_their_definitions),
         LOOKS_TEST(a_symmetric_logarithm_is_linear_around_0),
         LOOKS_TEST(a_symmetric_logarithm_begins_where_it_says),
