@@ -277,6 +277,7 @@ static const field option_fields[] = {
     OPTION(each_channel, 'b'),
     OPTION(levels, 'l'),
     OPTION(suv, 's'),
+    OPTION(z_scale, 'd'),
 };
 
 #define LOOK(name, kind) FIELD(snow_look, name, kind)

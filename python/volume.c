@@ -340,11 +340,27 @@ static PyObject *list_of_channels(const snow_volume_info *i) {
     return list;
 }
 
+/* The unit of each axis of the world, and the world's length of one. */
+static PyObject *axes_of_info(const snow_volume_info *i) {
+    PyObject *list = PyList_New(0);
+    for (int n = 0; list && n < 3; n++) {
+        const char *own = i->axis_unit[n];
+        const double scale = i->axis_scale[n];
+        PyObject *one = Py_BuildValue(
+            "(O&d)", text_of, !*own ? i->unit : strcmp(own, "1") ? own : "",
+            scale < 0 || scale > 0 ? scale : 1.0);
+        if (!one || PyList_Append(list, one))
+            Py_CLEAR(list);
+        Py_XDECREF(one);
+    }
+    return list;
+}
+
 static PyObject *dict_of_info(const snow_volume_info *i) {
     const double(*m)[4] = i->matrix;
     return Py_BuildValue(
         "{s(LLL)sss(ddd)s((dddd)(dddd)(dddd)(dddd))sdsdsOsO&sssLsLsO&sO&sO"
-        "sO&sO&sO&sdsO&sO&sLsNsssz}",
+        "sO&sO&sO&sdsO&sO&sLsNsNsssz}",
         "dims", (long long)i->dims[0], (long long)i->dims[1],
         (long long)i->dims[2], "type", snow_type_name(i->type), "spacing",
         i->spacing[0], i->spacing[1], i->spacing[2], "matrix", m[0][0], m[0][1],
@@ -359,8 +375,9 @@ static PyObject *dict_of_info(const snow_volume_info *i) {
         i->description, "time_value", i->time_value, "time_unit", text_of,
         i->time_unit, "calendar", text_of, i->calendar, "channel_count",
         (long long)(i->channels > 1 ? i->channels : 1), "channels",
-        list_of_channels(i), "first_mode", snow_mode_name(snow_mode_for(i)),
-        "first_colormap", snow_colormap_for(i));
+        list_of_channels(i), "axes", axes_of_info(i), "first_mode",
+        snow_mode_name(snow_mode_for(i)), "first_colormap",
+        snow_colormap_for(i));
 }
 
 static PyObject *volume_info(PyObject *self, void *closure) {

@@ -4,6 +4,7 @@
 #include "message.h"
 
 #include "commands/commands.h"
+#include "commands/world.h"
 #include "draw/mixed.h"
 #include "draw/slices.h"
 #include "draw/values.h"
@@ -87,14 +88,19 @@ void answer_info(drawing *d, outbox *box) {
     json_t *tree = json_pack(
         "{s:s, s:s, s:o, s:o, s:s, s:s, s:b, s:I, s:o, s:o, s:o, s:f}", "t",
         "info", "name", base_of(d->first.operands[0]), "dims",
-        json_sizes(info->dims, 3), "spacing", json_vector(info->spacing, 3),
-        "unit", info->unit, "type", stored_type(d), "medical",
-        (int)info->medical, "times", (json_int_t)info->times, "min",
-        json_number(ends[0]), "max", json_number(ends[1]), "middle",
-        json_vector(middle, 3), "radius", radius);
-    json_t *matrix = json_array();
-    for (int i = 0; i < 3; i++)
+        json_sizes(info->dims, 3), "spacing",
+        json_vector(world_in_units(info).spacing, 3), "unit", info->unit,
+        "type", stored_type(d), "medical", (int)info->medical, "times",
+        (json_int_t)info->times, "min", json_number(ends[0]), "max",
+        json_number(ends[1]), "middle", json_vector(middle, 3), "radius",
+        radius);
+    json_t *matrix = json_array(), *axes = json_array();
+    for (int i = 0; i < 3; i++) {
         json_array_append_new(matrix, json_vector(info->matrix[i], 4));
+        json_array_append_new(axes, json_pack("[s, f]", world_unit(info, i),
+                                              world_length(info, i)));
+    }
+    json_object_set_new(tree, "axes", axes);
     json_object_set_new(tree, "matrix", matrix);
     json_object_set_new(tree, "view",
                         json_string(snow_view_name_for(info, NULL)));

@@ -43,9 +43,10 @@ function letter(info, k, sign) {
 /** "S 12.5 mm", or "z = 3 um". */
 function placeText(info, k, at) {
     const way = column(info.matrix, k).map(Math.abs), axis = way.indexOf(Math.max(...way));
-    const value = short(Math.abs(at[axis]));
-    return info.medical ? `${'RLAPSI'[2 * axis + (at[axis] < 0 ? 1 : 0)]} ${value} ${info.unit}`
-        : `${'xyz'[axis]} = ${short(at[axis])} ${info.unit}`;
+    const [unit, length] = info.axes[axis], value = at[axis] / length;
+    return info.medical ?
+        `${'RLAPSI'[2 * axis + (value < 0 ? 1 : 0)]} ${short(Math.abs(value))} ${unit}`
+        : `${'xyz'[axis]} = ${short(value)} ${unit}`;
 }
 
 class Pane {

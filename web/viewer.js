@@ -285,7 +285,8 @@ engine.on('info', info => {
     page.whole ??= info.dims;
     document.title = `${info.name} - snowglass`;
     title.textContent = `${info.name}  ${info.dims.join(' x ')}${info.live ? '' : ` ${info.type}`}, ` +
-        `${info.spacing.map(x => +x.toPrecision(4)).join(' x ')} ${info.unit}`;
+        `${info.spacing.map(x => +x.toPrecision(4)).join(' x ')} ` +
+        [...new Set(info.axes.map(axis => axis[0]))].join(', ');
     if (known) // a part of the same volume
         panel.update();
     else

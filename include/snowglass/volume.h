@@ -67,6 +67,8 @@ typedef struct snow_volume_info {
     snow_channel channel[SNOW_CHANNELS_MAX]; /* the first of them */
     bool negative, estimate; /* says the file: high is dark; statistics */
     uint64_t light; /* bit n: channel n of several is of emitted light */
+    double axis_scale[3];    /* world's length of a unit; below 0: down; 0: 1 */
+    char axis_unit[3][16];   /* of the world's x, y, z; "": `unit`; "1": none */
 } snow_volume_info;
 SNOW_RECORD(snow_volume_info);
 typedef enum snow_endian {   /* byte order of raw data */
@@ -108,6 +110,7 @@ typedef struct snow_volume_options {
     bool each_channel, time_given; /* no warning of others: channels, steps */
     int64_t levels; /* of refinement, so many of the coarsest; 0: all */
     const char *suv; /* PET: "bw", "lbm", "bsa", "none"; NULL: bw, if known */
+    double z_scale; /* of the world's z; 0: of the earth's grids by their size */
 } snow_volume_options;
 SNOW_RECORD(snow_volume_options);
 /* Opens a file (format by its first bytes, then its name; gzip is undone), "-"
@@ -178,7 +181,6 @@ SNOW_API bool snow_are_hounsfield(const snow_volume_info *, double, double);
  * Errors: BAD_USAGE unless lo < hi, both finite, bins > 0. */
 SNOW_API snow_status snow_volume_histogram(const snow_volume *volume, double lo,
     double hi, size_t bins, uint64_t *counts);
-
 /* New volumes. In another type (NONE: the smallest), rounded for integers, or
  * with `range` spread over an integer of up to 32 bits. Errors: no fit. */
 SNOW_API snow_status snow_volume_convert(const snow_volume *volume,
@@ -192,7 +194,6 @@ SNOW_API snow_status snow_volume_mask(const snow_volume *volume,
 /* The same where a x + b y + c z > d for any of up to SNOW_CLIPS_MAX planes. */
 SNOW_API snow_status snow_volume_clip(const snow_volume *volume,
     const double *planes, size_t count, snow_volume **out);
-
 /* Resamples *volume to a grid, unless it has it, by nearest voxels or linear.
  * Errors: BAD_INPUT (worlds that do not compare, docs/formats.md). */
 SNOW_API snow_status snow_volume_regrid(
@@ -200,7 +201,6 @@ SNOW_API snow_status snow_volume_regrid(
 /* Reads "1,4-7,-3" (below 2^53 both ways); false for other text, or no room. */
 SNOW_API bool snow_labels_parse(
     const char *text, snow_label_range *ranges, size_t room, size_t *count);
-
 /* Writes .nrrd, .nii, .nii.gz, .mha, .npy, .raw or .raw.gz, whole or not at
  * all. Errors: BAD_OUTPUT (an existing file, unless `overwrite`), suffix. */
 SNOW_API snow_status snow_volume_save(

@@ -250,14 +250,13 @@ static void add_legend(const options *opts, const snow_volume_info *info,
 static char *recipe_text(const options *opts, const snow_volume_info *info,
                          const char *tf) {
     static const char *const done[] = {
-        "input",    "output",      "depth",         "verb",
-        "version",  "quality",     "bits",          "channel",
-        "dims",     "type",        "endian",        "offset",
-        "time",     "dataset",     "spacing",       "series",
-        "mask",     "labels",      "crop",          "overwrite",
-        "memory",   "component",   "allow-gaps",    "threads",
-        "isa",      "method",      "deterministic", "tf",
-        "encoding", "label-table", "levels",        "suv"};
+        "input",   "output",        "depth",      "verb",     "version",
+        "quality", "bits",          "channel",    "dims",     "type",
+        "endian",  "offset",        "time",       "dataset",  "spacing",
+        "series",  "mask",          "labels",     "crop",     "overwrite",
+        "memory",  "component",     "allow-gaps", "threads",  "isa",
+        "method",  "deterministic", "tf",         "encoding", "label-table",
+        "levels",  "z-scale",       "suv"};
     json_t *tree = config_tree(opts, verb_of(VERB_RENDER));
     for (size_t i = 0; i < sizeof done / sizeof *done; i++)
         json_object_del(tree, done[i]);

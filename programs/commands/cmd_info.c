@@ -3,6 +3,7 @@
 #include "commands/commands.h"
 #include "commands/info_list.h"
 #include "commands/info_volume.h"
+#include "commands/world.h"
 #include "run/log.h"
 #include "run/paths.h"
 
@@ -141,8 +142,9 @@ static void print_times(const facts *f) {
 
 /* The geometry of the file; scale and time steps only if they matter. */
 static void print_geometry(const facts *f) {
-    const snow_volume_info *info = f->info;
-    char letters[4];
+    const snow_volume_info own = world_in_units(f->info), *info = &own;
+    char letters[4], units[64];
+    world_units(info, units, sizeof units);
     printf("%-14s%s\n", "format", info->format);
     printf("%-14s%" PRId64 " x %" PRId64 " x %" PRId64 " (%" PRId64
            " voxels)\n",
@@ -153,9 +155,8 @@ static void print_geometry(const facts *f) {
     if (*info->quantity || *info->value_unit)
         printf("%-14s%s%s%s%s\n", "quantity", info->quantity, both ? " (" : "",
                info->value_unit, both ? ")" : "");
-    printf("%-14s%g x %g x %g%s%s\n", "spacing", info->spacing[0],
-           info->spacing[1], info->spacing[2], info->unit[0] ? " " : "",
-           info->unit);
+    printf("%-14s%g x %g x %g%s\n", "spacing", info->spacing[0],
+           info->spacing[1], info->spacing[2], units);
     if (info->medical) {
         info_axis_letters(info, letters);
         printf("%-14s%s (the sides that x, y and z point to)\n", "axes",

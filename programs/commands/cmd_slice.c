@@ -4,6 +4,7 @@
  * The header says where the slice lies, and a crop has no more than it read. So
  * a slice of a volume larger than memory takes the memory of a slice. */
 #include "commands/commands.h"
+#include "commands/world.h"
 #include "options/config.h"
 #include "picture/annotations.h"
 #include "picture/outputs.h"
@@ -57,13 +58,16 @@ static int make_picture(slice_work *w) {
 static void describe_place(const slice_work *w, char *out, size_t size) {
     const snow_slice_place *first = &w->places[0];
     const snow_slice_place *last = &w->places[w->count - 1];
-    const char *axis = slice_axis_name(w), *unit = slice_unit(&w->whole);
+    const char *axis = slice_axis_name(w), *unit = slice_unit(w);
+    char units[64];
+    world_units(&w->whole, units, sizeof units);
     if (w->kind == SLICE_ORTHO)
         snprintf(out, size,
                  "axial slice %" PRId64 ", coronal %" PRId64
                  ", sagittal %" PRId64 ", at %g,%g,%g%s",
                  first->index, w->places[1].index, last->index, w->point[0],
-                 w->point[1], w->point[2], unit);
+                 w->point[1], w->point[2],
+                 strchr(units, ',') ? units : units + (*units == ' '));
     else if (w->kind == SLICE_GRID)
         snprintf(out, size,
                  "%" PRId64 " %s slices from %" PRId64 " to %" PRId64
@@ -152,7 +156,7 @@ static int write_slice(slice_work *w) {
 /* --- figures -------------------------------------------------------------- */
 
 static json_t *figures_of_place(const slice_work *w) {
-    const char *axis = slice_axis_name(w), *unit = slice_unit(&w->whole);
+    const char *axis = slice_axis_name(w), *unit = slice_unit(w);
     if (w->kind == SLICE_ONE)
         return json_pack("{s:s,s:I,s:f,s:s}", "axis", axis, "index",
                          (json_int_t)w->places[0].index, "position",
@@ -165,7 +169,8 @@ static json_t *figures_of_place(const slice_work *w) {
     return w->kind == SLICE_GRID
                ? json_pack("{s:s,s:o}", "axis", axis, "indices", indices)
                : json_pack("{s:o,s:[f,f,f],s:s}", "indices", indices, "point",
-                           w->point[0], w->point[1], w->point[2], "unit", unit);
+                           w->point[0], w->point[1], w->point[2], "unit",
+                           w->whole.unit);
 }
 
 static json_t *figures(const slice_work *w) {

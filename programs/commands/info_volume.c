@@ -2,6 +2,7 @@
  * of those of a list. */
 #include "commands/info_volume.h"
 #include "commands/commands.h"
+#include "commands/world.h"
 #include "run/log.h"
 #include "run/paths.h"
 
@@ -70,15 +71,19 @@ static json_t *component_names(const snow_volume_info *info) {
 /* Scripts rely on the keys: dims has x first, matrix maps index to world, row
  * by row. */
 void info_set_geometry(json_t *object, const snow_volume_info *info) {
-    json_t *matrix = json_array();
+    const snow_volume_info own = world_in_units(info);
+    json_t *matrix = json_array(), *units = json_array();
     for (int i = 0; i < 4; i++)
-        json_array_append_new(matrix, json_vector(info->matrix[i], 4));
+        json_array_append_new(matrix, json_vector(own.matrix[i], 4));
+    for (int i = 0; i < 3; i++)
+        json_array_append_new(units, json_string(world_unit(info, i)));
     json_object_set_new(object, "format", json_string(info->format));
     json_object_set_new(object, "dims", json_sizes(info->dims, 3));
     json_object_set_new(object, "type",
                         json_string(snow_type_name(info->type)));
-    json_object_set_new(object, "spacing", json_vector(info->spacing, 3));
+    json_object_set_new(object, "spacing", json_vector(own.spacing, 3));
     json_object_set_new(object, "unit", json_string(info->unit));
+    json_object_set_new(object, "axis_units", units);
     json_object_set_new(object, "matrix", matrix);
     json_object_set_new(object, "medical", json_boolean(info->medical));
     if (info->medical) {

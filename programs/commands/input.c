@@ -1,6 +1,7 @@
 /* input.c - opens the volume and makes the transfer function from the
  * options. */
 #include "commands/commands.h"
+#include "commands/world.h"
 #include "picture/layers.h"
 #include "picture/outputs.h"
 #include "run/log.h"
@@ -36,6 +37,7 @@ snow_volume_options data_options(const options *opts) {
         .allow_gaps = opts->allow_gaps,
         .levels = opts->levels,
         .suv = suv_of(opts),
+        .z_scale = opts->z_scale,
         .component = opts->component,
         .dataset = opts->dataset,
         .series = opts->series,
@@ -275,9 +277,11 @@ int open_look(snow_context *context, const options *opts,
 
 /* Short enough for the single line that render prints. */
 void describe_volume(const snow_volume_info *info, char *out, size_t size) {
-    snprintf(out, size, "%s %lldx%lldx%lld %s, spacing %gx%gx%g%s%s",
+    const snow_volume_info own = world_in_units(info);
+    char units[64];
+    world_units(info, units, sizeof units);
+    snprintf(out, size, "%s %lldx%lldx%lld %s, spacing %gx%gx%g%s",
              info->format, (long long)info->dims[0], (long long)info->dims[1],
              (long long)info->dims[2], snow_type_name(info->type),
-             info->spacing[0], info->spacing[1], info->spacing[2],
-             info->unit[0] ? " " : "", info->unit);
+             own.spacing[0], own.spacing[1], own.spacing[2], units);
 }

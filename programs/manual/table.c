@@ -29,7 +29,8 @@ static const struct {
                READER(color),     READER(range),    READER(points),
                READER(light),     READER(legend),   READER(overlay_look),
                READER(annotate),  READER(material), READER(gradient_points),
-               READER(scale),     READER(place),    READER(listen)};
+               READER(scale),     READER(place),    READER(listen),
+               READER(z_scale)};
 
 /* NULL for a reader that has no name above. */
 static const char *reader_name(option_read *read) {

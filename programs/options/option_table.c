@@ -233,6 +233,10 @@ const option_row option_table[] = {
     {"levels", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(levels), 1, 24,
      "levels of refinement to read, the coarsest first, as if the file had no "
      "finer ones: of AMReX and .vth (default: all)"},
+    {"z-scale", 0, "F|auto", TOPIC_DATA, INPUT, read_z_scale, FIELD(z_scale),
+     1e-9, 1e9, "factor on the height of the world; auto, the default, makes that of "
+     "a grid of the earth, whose x and y are degrees and whose z is not, a third "
+     "of its shorter side"},
     {"mask", 0, "FILE", TOPIC_DATA, INPUT, read_text, FIELD(mask), 0, 0, "volume in the same place; where it is 0 or NaN, voxels of the input are "
      "removed: neither shown nor counted (default: none)"},
     {"labels", 0, "LIST", TOPIC_DATA, INPUT, read_labels, FIELD(labels), 0, 0,

@@ -14,6 +14,7 @@ option_read read_combine;   /* const char *, and options.radix */
 option_read read_real;      /* double within low..high */
 option_read read_fov;       /* double; the default for an empty text */
 option_read read_strength;  /* double; 1 for an empty text */
+option_read read_z_scale;   /* double; 0 for auto */
 option_read read_tolerance; /* double; quotients are allowed */
 option_read read_time;
 option_read read_integer;         /* int64_t within low..high */

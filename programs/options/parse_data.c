@@ -12,6 +12,12 @@ bool read_component(const option_row *row, const char *text, void *field,
     return read_text(row, text, field, wrong);
 }
 
+bool read_z_scale(const option_row *row, const char *text, void *field,
+                  char wrong[WRONG_BYTES]) {
+    *(double *)field = 0;
+    return strcmp(text, "auto") == 0 || read_real(row, text, field, wrong);
+}
+
 bool read_channels(const option_row *row, const char *text, void *field,
                    char wrong[WRONG_BYTES]) {
     (void)row;

@@ -1,5 +1,6 @@
 /* render_stats.c - reports seconds, bytes and the checksum of one picture. */
 #include "picture/render_stats.h"
+#include "commands/world.h"
 #include "run/log.h"
 #include "run/start.h"
 
@@ -18,7 +19,8 @@ static json_t *volume_json(const snow_volume_info *info) {
     json_object_set_new(object, "dims", json_sizes(info->dims, 3));
     json_object_set_new(object, "type",
                         json_string(snow_type_name(info->type)));
-    json_object_set_new(object, "spacing", json_vector(info->spacing, 3));
+    json_object_set_new(object, "spacing",
+                        json_vector(world_in_units(info).spacing, 3));
     return object;
 }
 

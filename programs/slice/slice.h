@@ -26,7 +26,7 @@ typedef struct slice_work {
     snow_volume_info whole; /* what the slices are counted in */
     int axis, world;        /* of the grid, and of the world beside it */
     int grid[2];            /* columns and rows of SLICE_GRID */
-    double point[3];        /* of SLICE_ORTHO, in the world */
+    double point[3];        /* of SLICE_ORTHO, in units of the axes */
     snow_slice_place *places;
     int64_t count;
     int size[2];          /* of the picture, or of a frame */
@@ -51,11 +51,11 @@ int slice_choose_kind(slice_work *w);
 /* --- slice_find.c: which slices ------------------------------------------- */
 
 const char *slice_axis_name(const slice_work *w);
-const char *slice_unit(const snow_volume_info *info);
 
 /* The coordinate of a slice's middle along the axis of the world that it lies
- * across. */
+ * across, and its unit. */
 double slice_position(const slice_work *w, double index);
+const char *slice_unit(const slice_work *w);
 
 /* Finds the slices in `whole`; those of a grid that has no --at only when there
  * is a look (slice_spread). */

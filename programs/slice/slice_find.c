@@ -1,5 +1,6 @@
 /* slice_find.c - which slices of a volume are drawn, and how they lie. */
 #include "commands/commands.h"
+#include "commands/world.h"
 #include "movie/movie_encoder.h"
 #include "movie/movie_names.h"
 #include "picture/annotations.h"
@@ -22,8 +23,8 @@ const char *slice_axis_name(const slice_work *w) {
     return w->opts.axis ? w->opts.axis : "axial";
 }
 
-const char *slice_unit(const snow_volume_info *info) {
-    return *info->unit ? info->unit : "mm";
+const char *slice_unit(const slice_work *w) {
+    return world_unit(&w->whole, w->world);
 }
 
 double slice_position(const slice_work *w, double index) {
@@ -32,7 +33,7 @@ double slice_position(const slice_work *w, double index) {
     for (int i = 0; i < 3; i++)
         at += info->matrix[w->world][i] *
               (i == w->axis ? index : ((double)info->dims[i] - 1) / 2);
-    return at;
+    return at / world_length(info, w->world);
 }
 
 /* --- what is asked -------------------------------------------------------- */
@@ -88,7 +89,7 @@ int slice_choose_kind(slice_work *w) {
 /* --- one place ------------------------------------------------------------ */
 
 static int refuse_place(const slice_work *w, const char *at) {
-    const char *unit = slice_unit(&w->whole);
+    const char *unit = slice_unit(w);
     const double last = (double)w->whole.dims[w->axis] - 1;
     return fail_usage("--at: '%s' is no slice across %s: must be 0 to %g, "
                       "or a position from %g%s to %g%s",
@@ -102,9 +103,11 @@ static double read_place(const slice_work *w, const char *text, bool length,
                          bool *placed) {
     char *end = NULL;
     double index = strtod(text, &end);
-    *placed = end > text && strcmp(end, slice_unit(&w->whole)) == 0;
+    const double ratio = end > text ? world_ratio(&w->whole, w->world, end) : 0;
+    *placed = ratio > 0;
     if (*placed)
-        return (index - (length ? 0 : slice_position(w, 0))) /
+        return (index * ratio - (length ? 0 : slice_position(w, 0))) *
+               world_length(&w->whole, w->world) /
                w->whole.matrix[w->world][w->axis];
     return end > text && !*end ? index : NAN;
 }
@@ -161,8 +164,9 @@ static int list_range(const slice_work *w, int64_t **list, int64_t *count) {
     if (!read_range(w, range))
         return fail_usage("--at: '%s' is no range of slices; give A:B or "
                           "A:B:STEP, from A up to, not including, B, as "
-                          "numbers from 0 or positions in %s",
-                          w->opts.at, slice_unit(&w->whole));
+                          "numbers from 0 or positions%s%s",
+                          w->opts.at, *slice_unit(w) ? " in " : "",
+                          slice_unit(w));
     const double room = (range[1] - range[0]) / range[2];
     int64_t *found =
         malloc((size_t)fmin(fmax(room, 0) + 2, FRAMES_MOST) * sizeof *found);
@@ -327,37 +331,47 @@ int slice_spread(slice_work *w) {
     return done;
 }
 
-/* "x,y,z", with or without a unit; the middle where there is none. */
+/* "x,y,z", with or without a unit that all have; the middle where there is
+ * none. */
 static int find_point(slice_work *w) {
     const snow_volume_info *info = &w->whole;
     const char *at = w->opts.at;
     double *p = w->point;
-    char unit[24] = "";
+    char unit[24] = "", units[64];
     for (int row = 0; row < 3; row++) {
         p[row] = info->matrix[row][3];
         for (int i = 0; i < 3; i++)
             p[row] += info->matrix[row][i] * floor((double)info->dims[i] / 2);
+        p[row] /= world_length(info, row);
     }
     if (!at)
         return CONTINUE;
     const int got = sscanf(at, "%lf,%lf,%lf%23s", &p[0], &p[1], &p[2], unit);
-    if (got < 3 || (got == 4 && strcmp(unit, slice_unit(info)) != 0) ||
-        !isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
-        return fail_usage("--at: '%s' is no point; with --ortho give X,Y,Z in "
-                          "%s of the world",
-                          at, slice_unit(info));
-    return CONTINUE;
+    bool right = got >= 3;
+    for (int row = 0; row < 3; row++) {
+        const double ratio = got == 4 ? world_ratio(info, row, unit) : 1;
+        p[row] *= ratio;
+        right = right && ratio > 0 && isfinite(p[row]);
+    }
+    world_units(info, units, sizeof units);
+    return right ? CONTINUE
+                 : fail_usage("--at: '%s' is no point; with --ortho give X,Y,Z "
+                              "in%s of the world",
+                              at, *units ? units : " units");
 }
 
 static int find_ortho(slice_work *w) {
+    double world[3];
     int done = find_point(w);
     if (done == CONTINUE)
         done = make_places(w, 3);
+    for (int n = 0; n < 3; n++)
+        world[n] = w->point[n] * world_length(&w->whole, n);
     for (int n = 0; n < 3 && done == CONTINUE; n++) {
         w->size[0] = (int)w->opts.size[0];
         w->size[1] = (int)w->opts.size[1];
-        snow_status status = snow_slice_ortho(w->context, &w->whole, w->point,
-                                              n, w->size, &w->places[n]);
+        snow_status status = snow_slice_ortho(w->context, &w->whole, world, n,
+                                              w->size, &w->places[n]);
         if (status != SNOW_STATUS_OK)
             done = fail_usage("--at: %s", snow_context_message(w->context));
     }

@@ -248,7 +248,8 @@ def _place_of(source: Any, names: Mapping[str, str]) -> tuple[Any, str]:
     """The matrix of its coordinates, and the unit of x, as snow_cf_place has them
     of files.  Other lengths become that unit.  An axis with another unit, or with
     none beside one, cannot be compared with x: a metre is not longer than a
-    degree.  It has the spacing of x."""
+    degree.  It has the spacing of x; z beside degrees a height of a third of the
+    shorter side."""
     import numpy
     found = {axis: _coordinate(source, names[axis]) for axis in "xyz"}
     x = found["x"]
@@ -258,8 +259,12 @@ def _place_of(source: Any, names: Mapping[str, str]) -> tuple[Any, str]:
         ratio = _ratio(unit, x.unit) if given else 0.0
         if given and not ratio:
             warn(f"coordinate '{names[axis]}' has another unit ({unit!r}) than x "
-                 f"({x.unit!r}): it has the spacing of x; spacing= gives another")
-        affine[n, n] = step * ratio or math.copysign(x.step, step)
+                 f"({x.unit!r}): it has a height of its own; spacing= gives another")
+        usual = x.step
+        if axis == "z" and x.unit == found["y"].unit == "degrees":
+            usual = min(abs(affine[k, k]) * (source.sizes[names["xy"[k]]] - 1)
+                        for k in (0, 1)) / 3 / max(source.sizes[names["z"]] - 1, 1)
+        affine[n, n] = step * ratio or math.copysign(usual, step)
         affine[n, 3] = first * ratio
     return affine, x.unit if x.given else ""
 

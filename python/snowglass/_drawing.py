@@ -252,7 +252,8 @@ class Drawing:
         return {
             "t": "info", "medical": info["medical"], "type": info["type"],
             "name": source["input"].rpartition("/")[2] if source else "array",
-            "dims": info["dims"], "spacing": info["spacing"],
+            "dims": info["dims"], "spacing": self.volume.spacing,
+            "axes": info["axes"],
             "unit": info["unit"], "times": info["times"],
             "min": _number(known["min"]), "max": _number(known["max"]),
             "middle": middle, "radius": radius, "matrix": info["matrix"][:3],

@@ -12,8 +12,8 @@ from ._looks import Look, look_of
 
 #: Keys of the data, as options of Volume.
 DATA = ("dims", "type", "endian", "spacing", "offset", "time", "channel",
-        "component", "crop", "dataset", "series", "allow_gaps", "suv",
-        "levels", "mask", "labels", "label_table", "clip")
+        "component", "crop", "dataset", "series", "allow_gaps", "suv", "levels",
+        "z_scale", "mask", "labels", "label_table", "clip")
 #: Keys of the look.
 LOOK = ("preset", "colormap", "range", "opacity", "gradient_opacity", "scale")
 #: Other names of some, as of matplotlib and PyVista, and what no recipe has.

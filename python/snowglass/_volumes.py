@@ -51,7 +51,7 @@ class Volume(_snowglass.Volume):
     ((x0, x1), (y0, y1), (z0, z1)), dataset, series, allow_gaps (a DICOM folder,
     an OME-TIFF or a stack of ImageJ in which slices are missing is opened), suv (unit of PET in DICOM: "bw", "lbm",
     "bsa", or "none", as stored), levels (of refinement that are read,
-    the coarsest first), mask (a path), labels ("1,4-7"),
+    the coarsest first), z_scale (a factor on the height, or "auto", as of --z-scale), mask (a path), labels ("1,4-7"),
     label_table (a path: names and colours), clip (planes (a, b, c, d): what lies where a x + b y + c z > d is cut away).
 
     channel   Pictures of a file whose channels are images of one thing show all
@@ -112,6 +112,8 @@ class Volume(_snowglass.Volume):
         spacing = fields.get("spacing")
         if spacing is not None and not hasattr(spacing, "__len__"):
             fields["spacing"] = (spacing,) * 3
+        if fields.get("z_scale") == "auto":
+            del fields["z_scale"]
         for name in ("mask", "label_table", "dataset", "series", "labels",
                      "component", "suv"):
             if fields.get(name) is not None:
@@ -219,8 +221,20 @@ class Volume(_snowglass.Volume):
 
     @property
     def spacing(self) -> tuple[float, float, float]:
-        """Lengths of a voxel along x, y, z."""
-        return self.info["spacing"]
+        """Lengths of a voxel along x, y, z, in axis_units."""
+        info, scales = self.info, [scale for _, scale in self.info["axes"]]
+        if all(abs(scale) == 1 for scale in scales):
+            return info["spacing"]
+        rows = list(zip(info["matrix"], scales))
+        return tuple(math.hypot(*(row[n] / scale for row, scale in rows))
+                     for n in range(3))
+
+    @property
+    def axis_units(self) -> tuple[str, str, str]:
+        """The unit of each axis of the world, as ("degrees", "degrees", "hPa");
+        affine has them in lengths that can be drawn beside each other: those of
+        one unit are info["axes"][n][1], below 0 where it grows downward."""
+        return tuple(unit for unit, _ in self.info["axes"])
 
     @property
     def affine(self) -> "numpy.typing.NDArray[Any]":
@@ -276,8 +290,10 @@ class Volume(_snowglass.Volume):
     def __str__(self) -> str:
         info, known = self.info, self._statistics()
         dims = "x".join(str(each) for each in info["dims"])
-        spacing = "x".join(f"{each:g}" for each in info["spacing"])
-        unit = " " + info["unit"] if info["unit"] else ""
+        spacing = "x".join(f"{each:g}" for each in self.spacing)
+        units = dict.fromkeys(self.axis_units)
+        unit = " " + ", ".join(self.axis_units if len(units) > 1 else units) \
+            if any(units) else ""
         return f"{dims} {info['type']}, {spacing}{unit}, " \
                f"{known['min']:g}..{known['max']:g}"
 

@@ -58,6 +58,7 @@ TYPES = {
     "choice": string(),
     "real": number(),
     "strength": number(),
+    "z_scale": number(),
     "kernel": any_of(string(pattern="^(auto|tent|gauss|bspline|box)(:[2-9])?$")),
     "legend": any_of({"type": "boolean"}, string()),
     "annotate": any_of(enum("step", "time"), string(pattern="^time=")),

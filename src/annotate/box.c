@@ -151,12 +151,21 @@ static void name_axis(const box_view *b, int axis, box_axis *out) {
     int world = found < 3 ? found : -1;
     double first = world < 0 ? 0 : info->matrix[world][3];
     double step = world < 0 ? info->spacing[axis] : info->matrix[world][axis];
+    const char *unit = world < 0 || !*info->axis_unit[world]
+                           ? info->unit
+                           : info->axis_unit[world];
+    if (world >= 0 && fabs(info->axis_scale[world]) > 0) {
+        first /= info->axis_scale[world];
+        step /= info->axis_scale[world];
+    }
+    if (!strcmp(unit, "1"))
+        unit = "";
     for (int end = 0; end < 2; end++)
         out->from[end] =
             first + step * (end ? (double)info->dims[axis] - 0.5 : -0.5);
     snprintf(out->name, sizeof out->name, "%c%s%s%s",
-             world < 0 ? "ijk"[axis] : "xyz"[world],
-             info -> unit[0] ? " (" : "", info->unit, *info->unit ? ")" : "");
+             world < 0 ? "ijk"[axis] : "xyz"[world], *unit ? " (" : "", unit,
+             *unit ? ")" : "");
 }
 
 /* The edge of the outline that is farthest down and to the left. */

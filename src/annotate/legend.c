@@ -92,6 +92,27 @@ static void write_length(double length, const char *unit, char *out,
                     at < 0 ? unit : units[at]);
 }
 
+/* What stands in its place where the world's z has another scale: how many
+ * times it is higher, where both are lengths. */
+static bool write_height(const snow_volume_info *info, char *out, size_t size) {
+    const double scale = fabs(info->axis_scale[2]);
+    const char *unit = info->axis_unit[2];
+    const double base = !*unit ? 1
+                        : strcmp(info->unit, "degrees") != 0
+                            ? 0
+                            : snow_unit_length(unit, NULL) /
+                                  (SNOW_DEGREE * snow_unit_length("m", NULL));
+    if (info->dims[2] == 1 || !(scale > 0) || (!*unit && scale == 1))
+        return false;
+    const double digit = pow(10, floor(log10(scale / base)) - 1);
+    if (base > 0)
+        snow_text_print(out, size, "height x %.6g",
+                        rint(scale / base / digit) * digit);
+    else
+        snow_text_print(out, size, "height not to scale");
+    return true;
+}
+
 snow_status snow_overlay_scale_bar(snow_overlay *overlay,
                                    const snow_volume_info *info,
                                    const snow_view *view) {
@@ -116,11 +137,15 @@ snow_status snow_overlay_scale_bar(snow_overlay *overlay,
     overlay->strip = fmax(overlay->strip, strip);
     double right = left + length, tick = 0.35 * height;
     double y = floor(overlay->height - 1.2 * height) + 0.5;
-    write_length(length * camera.pitch, volume.unit, text, sizeof text);
-    SNOW_TRY(snow_begin_strokes(overlay, height));
-    SNOW_TRY(snow_overlay_stroke(overlay, left, y, right, y));
-    SNOW_TRY(snow_overlay_stroke(overlay, left, y - tick, left, y + tick));
-    SNOW_TRY(snow_overlay_stroke(overlay, right, y - tick, right, y + tick));
+    const bool from_above = fabs(camera.back[2]) > 1 - 1e-9;
+    if (from_above || !write_height(&volume, text, sizeof text)) {
+        write_length(length * camera.pitch, volume.unit, text, sizeof text);
+        SNOW_TRY(snow_begin_strokes(overlay, height));
+        SNOW_TRY(snow_overlay_stroke(overlay, left, y, right, y));
+        SNOW_TRY(snow_overlay_stroke(overlay, left, y - tick, left, y + tick));
+        SNOW_TRY(
+            snow_overlay_stroke(overlay, right, y - tick, right, y + tick));
+    }
     /* Above the middle, but within the picture. */
     const double half = height * snow_font_width(text) / 2;
     return snow_overlay_text(

@@ -166,4 +166,7 @@ bool snow_has_suffix(const char *text, const char *suffix);
  * ("CT_Bone" is "ct-bone"), except for a leading sign ("-x" is not "x"). */
 bool snow_same_name(const char *a, const char *b);
 
+/* Metres in a degree of a sphere as large as the earth (6,371 km). */
+#define SNOW_DEGREE 111195.0
+
 #endif

@@ -161,30 +161,55 @@ static snow_uneven plan_grid(snow_context *context, const cf_axis axes[3],
     return grid;
 }
 
-/* Other lengths become the unit of x.  An axis with another unit, or with none
- * beside one, cannot be compared with x: a month is not longer than a degree.
- * It is as long as if its voxels in the file had the mean distance of x. */
+/* How many units of x one of an axis is.  An axis with another unit, or with
+ * none beside one, cannot be compared with x: a month is not longer than a
+ * degree.  It is as long as if its voxels in the file had the mean distance of
+ * x; but a degree of the earth has a length. */
+static double ratio_of(const cf_axis *x, const cf_axis *axis, bool *same) {
+    const double usual = x->given ? fabs(x->step) : 1,
+                 length = snow_unit_length(axis->unit, NULL),
+                 lengths = snow_unit_length(x->unit, NULL);
+    *same = axis->given && !strcmp(axis->unit, x->unit);
+    if (*same)
+        return 1;
+    *same = axis->given && length > 0 && lengths > 0;
+    if (*same)
+        return length / lengths;
+    if (axis->given && length > 0 && !strcmp(x->unit, "degrees"))
+        return length / (SNOW_DEGREE * snow_unit_length("m", NULL));
+    return usual / (axis->given ? fabs(axis->step) : 1);
+}
+
+/* Sets what the world's length of a unit of an axis is. */
+static void scale_axis(const cf_axis *axis, int i, double ratio, bool same,
+                       snow_volume_info *info) {
+    const double scale = same || !axis->given ? 1 : ratio;
+    info->axis_scale[i] = axis->down ? -scale : scale;
+    if (!same)
+        snprintf(info->axis_unit[i], sizeof info->axis_unit[i], "%.15s",
+                 *axis->unit ? axis->unit : "1");
+}
+
 static void place_axis(snow_context *context, const cf_axis axes[3], int i,
                        const snow_uneven *grid, bool given,
                        snow_volume_info *info) {
-    const cf_axis *x = &axes[0], *axis = &axes[i];
-    double usual = x->given ? fabs(x->step) : 1;
-    /* How many units of x one is; 0 if they cannot be compared. */
-    const double times = !axis->given                   ? 0
-                         : !strcmp(axis->unit, x->unit) ? 1
-                         : snow_unit_length(x->unit, NULL) > 0
-                             ? snow_unit_length(axis->unit, NULL) /
-                                   snow_unit_length(x->unit, NULL)
-                             : 0;
-    const bool same = times > 0;
-    const double up = axis->down ? -1 : 1;
-    info->matrix[i][i] =
-        up * (same ? times * axis->step : copysign(usual, axis->step));
-    info->matrix[i][3] = same ? up * times * axis->first : 0;
+    const cf_axis *axis = &axes[i];
+    bool same;
+    const double ratio = ratio_of(&axes[0], axis, &same);
+    const double up = axis->down ? -1 : 1,
+                 usual = axes[0].given ? fabs(axes[0].step) : 1;
+    info->matrix[i][i] = axis->given ? up * ratio * axis->step : ratio;
+    info->matrix[i][3] = axis->given ? up * ratio * axis->first : 0;
+    if (!same && given) {
+        info->matrix[i][i] = copysign(usual, info->matrix[i][i]);
+        info->matrix[i][3] = 0;
+    } else if (info->dims[i] > 1 || axis->given) {
+        scale_axis(axis, i, ratio, same, info);
+    }
     if (grid->at[i])
         info->matrix[i][i] *=
             (double)(grid->count[i] - 1) / (double)(grid->even[i] - 1);
-    if (same && !axis->even && !grid->at[i] && !given)
+    if (axis->given && !axis->even && !grid->at[i] && !given)
         snow_notify(context,
                     "coordinates along %c neither rise nor fall throughout; "
                     "their mean distance, %g, is used",
@@ -194,11 +219,27 @@ static void place_axis(snow_context *context, const cf_axis axes[3], int i,
                     "coordinates along %c depart from even ones by %.2g %% of "
                     "a step at most; even ones are used",
                     "xyz"[i], 100 * axis -> departs);
-    if (axis->given && !same && info->dims[i] > 1 && !given)
+}
+
+/* A grid of the earth is flat: where x and y are in degrees and z is not, it
+ * gets a third of their shorter side in height. */
+static void raise(snow_context *context, const snow_volume_options *options,
+                  snow_volume_info *info) {
+    double side[3];
+    for (int i = 0; i < 3; i++)
+        side[i] = fabs(info->matrix[i][i]) * (double)(info->dims[i] - 1);
+    const double shorter = fmin(side[0], side[1]);
+    if (!*info->axis_unit[2])
+        return;
+    if (!(options->z_scale > 0) && !*info->axis_unit[1] && side[2] > 0 &&
+        shorter > 0 && !strcmp(info->unit, "degrees"))
+        snow_volume_stretch(info, shorter / 3 / side[2]);
+    if (info->dims[2] > 1)
         snow_notify(context,
-                    "%c has another unit than x (\"%s\"); the spacing of x "
-                    "is used for it, --spacing sets another",
-                    "xyz"[i], axis -> unit);
+                    "z has another unit (\"%s\") than x (\"%s\"): it keeps its "
+                    "coordinates; --z-scale sets the height in pictures",
+                    !strcmp(info->axis_unit[2], "1") ? "" : info->axis_unit[2],
+                    info->unit);
 }
 
 void snow_cf_place(snow_context *context, const cf_axis axes[3],
@@ -213,6 +254,7 @@ void snow_cf_place(snow_context *context, const cf_axis axes[3],
         place_axis(context, axes, i, grid, given, info);
     if (x->given && strlen(x->unit) < sizeof info->unit)
         memcpy(info->unit, x->unit, strlen(x->unit) + 1);
+    raise(context, options, info);
 }
 
 void snow_cf_time(const cf_axis *axis, snow_volume_info *info) {

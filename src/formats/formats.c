@@ -41,6 +41,11 @@ static snow_status check_options(snow_context *context,
                              "three sizes of at least 1",
                              (long long)options->dims[i]);
     }
+    if (!(options->z_scale >= 0) || !isfinite(options->z_scale))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--z-scale: %g is not a factor; give one above 0, or "
+                         "auto",
+                         options->z_scale);
     if (options->levels < 0)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "--levels: %lld is not a number of levels; give at "
@@ -68,6 +73,10 @@ static snow_status finish(snow_context *context, snow_status status,
     if (status == SNOW_STATUS_OK) {
         snow_volume_info_measure(given);
         status = snow_volume_replace_spacing(context, options, given);
+    }
+    if (status == SNOW_STATUS_OK && options->z_scale > 0) {
+        snow_volume_stretch(given, options->z_scale);
+        status = snow_volume_info_check(context, given);
     }
     if (status == SNOW_STATUS_OK)
         *info = snow_volume_info_of_box(given, first, given->dims);

@@ -146,6 +146,7 @@ const recipe_key recipe_keys[] = {
     MADE("allow-gaps", flag, data.allow_gaps, 0, 0, 0),
     KNOWN("suv", data.suv, suv_name, NULL),
     MADE("levels", long, data.levels, 1, 24, 0),
+    MADE("z-scale", given_real, data.z_scale, 1e-9, 1e9, 0),
     TEXT("mask", data.mask),
     MADE("labels", labels, data.labels, 0, 0, 0),
     TEXT("label-table", data.label_table),

@@ -1,5 +1,6 @@
 """NetCDF, classic and NetCDF-4, beside netCDF4."""
 import gzip
+import json
 import os
 
 import oracle
@@ -155,27 +156,68 @@ for form in FORMATS:
 a = oracle.sample("f4", (4, 5, 6))
 for form in FORMATS:
     for attributes, values, along in (
-            ({"units": "m", "positive": "down"}, np.arange(4) * 5.0, -3),
-            ({"units": "hPa"}, 1000 - np.arange(4) * 100.0, 3),
-            ({"units": "hPa"}, 100 + np.arange(4) * 100.0, -3),
-            ({"units": "m"}, np.arange(4) * 5.0, 3),
-            ({"units": "m"}, 20 - np.arange(4) * 5.0, -3),
+            ({"units": "m", "positive": "down"}, np.arange(4) * 5.0, -5),
+            ({"units": "hPa"}, 1000 - np.arange(4) * 100.0, 100),
+            ({"units": "hPa"}, 100 + np.arange(4) * 100.0, -100),
+            ({"units": "m"}, np.arange(4) * 5.0, 5),
+            ({"units": "m"}, 20 - np.arange(4) * 5.0, -5),
             ({"units": "degrees", "positive": "down"}, 1 + np.arange(4) * 2.0, -2)):
         write("d.nc", form, {"z": 4, "lat": 5, "lon": 6},
               axis("z", values, **attributes),
               axis("lat", np.arange(5), units="degrees_north"),
               axis("lon", np.arange(6) * 3, units="degrees_east"),
               ("v", "f4", ("z", "lat", "lon"), a))
-        first = -1 if attributes["units"] == "degrees" else 0
-        oracle.expect("d.nc", a, oracle.affine((3, 1, along), (0, 0, first)),
+        down = -1 if len(attributes) > 1 or attributes["units"] == "hPa" else 1
+        oracle.expect("d.nc", a, oracle.affine((3, 1, along), (0, 0, down * values[0])),
                       unit="degrees", name=f"{form} {attributes} {values}")
+        oracle.tells("d.nc", spacing=[3, 1, abs(along)],
+                     axis_units=["degrees", "degrees", attributes["units"]])
+
+
+def slice_at(at, *options):
+    """The number of the slice, and where it is."""
+    done = oracle.tool("slice", "d.nc", "--axis", "z", "--at", at, "-o", "s.png",
+                       "-y", "--stats", "s.json", *options)
+    found = {} if done.returncode else json.loads(oracle.got("s.json"))["slice"]
+    return done.stderr if done.returncode else \
+        (found["index"], round(found["position"], 6), found["unit"])
+
+
+# Each axis has its unit: levels are found by it, and higher in pictures.
+for unit, levels, places in (
+        ("hPa", (1000, 900, 800, 700), {"900hPa": (1, 900, "hPa"), "70000Pa": (3, 700, "hPa")}),
+        ("millibars", (1, 2, 3, 4), {"3hPa": (2, 3, "millibars"), "2": (2, 3, "millibars")}),
+        ("km", (0, 1, 2, 3), {"2000m": (2, 2, "km"), "3km": (3, 3, "km")})):
+    write("d.nc", "NETCDF4", {"z": 4, "lat": 7, "lon": 6},
+          axis("z", levels, units=unit),
+          axis("lat", np.arange(7), units="degrees_north"),
+          axis("lon", np.arange(6) * 3, units="degrees_east"),
+          ("v", "f4", ("z", "lat", "lon"), oracle.sample("f4", (4, 7, 6))))
+    for place, wanted in places.items():
+        oracle.checked += 1
+        if slice_at(place) != wanted:
+            oracle.fail(place, f"is {slice_at(place)}, not {wanted}")
+for options, height in (((), 6 / 3), (("--z-scale", "auto"), 6 / 3),
+                        (("--z-scale", 1), 3 / 111.195),
+                        (("--z-scale", 40), 120 / 111.195)):
+    oracle.tells("d.nc", options, spacing=[3, 1, 1],
+                 axis_units=["degrees", "degrees", "km"])
+    oracle.tool("convert", "d.nc", "-o", "d.nrrd", "-y", *options, check=True)
+    found = oracle.told("d.nrrd").get("spacing", [0] * 3)[2] * 3
+    if abs(found / height - 1) > 1e-6:
+        oracle.fail("z-scale", f"{options}: {found}, not {height}")
+write("d.nc", "NETCDF4", {"z": 4, "y": 7, "x": 6},
+      ("v", "f4", ("z", "y", "x"), oracle.sample("f4", (4, 7, 6))))
+if slice_at("2mm") != (2, 2, "") or slice_at("2", "--z-scale", 5) != (2, 2, ""):
+    oracle.fail("no unit", f"{slice_at('2mm')} {slice_at('2', '--z-scale', 5)}")
+oracle.refuse("d.nc", "out of range", ["--z-scale", "-3"], 2)
 
 # Coordinates, packed and missing values; a gzip stream around them.
 packed = oracle.sample("i2", (2, 4, 5, 6))
 packed[0, 1, 2, 3] = packed[0, 0, 0, 0] = -999
 values = packed * 0.5 + 10
 values[packed == -999] = np.nan
-matrix = oracle.affine((3, -0.5, 3), (1, 9, 0))
+matrix = oracle.affine((3, -0.5, 2), (1, 9, 0))
 for form in FORMATS:
     write("c.nc", form, {"time": None, "lev": 4, "lat": 5, "lon": 6},
           axis("lev", np.arange(4) * 2, units="km"),

@@ -53,6 +53,7 @@ snow_status snow_volume_open_named(snow_source *source, const char *name,
     snow_volume_options own = *options;
     char *path;
     memset(own.spacing, 0, sizeof own.spacing);
+    own.z_scale = 0;
     if (snow_source_depth(source) >= MOST_DEPTH)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "names a file that names others, %d times in a row; "

@@ -116,7 +116,7 @@ static void limit(const snow_uneven *grid, double bytes, double even[3]) {
 static void note_axis(snow_context *context, const snow_uneven *grid, int axis,
                       snow_volume_info *info) {
     double least, most, shift;
-    char shared[80] = "";
+    char shared[96] = "";
     size_t used = strlen(info->storage);
     const double *at = grid->at[axis], step = grid->step[axis];
     find_steps(at, grid->count[axis], &least, &most);
