@@ -2,13 +2,17 @@
  * with a number. */
 #define _XOPEN_SOURCE 700
 #include "movie/movie_files.h"
+#include "commands/commands.h"
 #include "movie/movie_names.h"
 #include "run/log.h"
 #include "run/paths.h"
 #include "run/start.h"
 
+#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
+#include <glob.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -115,8 +119,29 @@ static int64_t step_of(const numbers *list) {
     return step;
 }
 
+/* Whether each of the files from `first` on holds a time, and no two in a row
+ * the same. */
+static bool hold_times(const options *opts, const step_files *files,
+                       int64_t first) {
+    snow_context *context;
+    snow_volume_options data = data_options(opts);
+    snow_volume_info info = {.size = sizeof info};
+    double last = NAN;
+    bool held = snow_context_new(NULL, &context) == SNOW_STATUS_OK;
+    data.time = 0;
+    data.each_time = true;
+    for (int64_t i = first; i < files->count && held; i++) {
+        held = snow_volume_inspect(context, files->paths[i], &data, &info) ==
+                   SNOW_STATUS_OK &&
+               isfinite(info.time_value) && info.time_value != last;
+        last = info.time_value;
+    }
+    snow_context_free(context);
+    return held;
+}
+
 /* The first file that does not follow the one before it, in a series without
- * gaps, is refused.  %T names the iterations that exist, at any distance. */
+ * gaps, is refused. */
 static int check_next(const char *pattern, frame_names *names,
                       const number *item, int64_t step, bool gaps) {
     char path[PATH_MAX];
@@ -128,28 +153,40 @@ static int check_next(const char *pattern, frame_names *names,
             path, pattern);
         return SNOW_STATUS_BAD_INPUT;
     }
-    if (gaps || names->iterations || item->value - last == step)
+    if (gaps || item->value - last == step)
         return CONTINUE;
     names->digits = item[-1].digits;
     names_path(names, last + step, path, sizeof path);
-    say("%s: this step of %s is missing; create it, or name the files one by "
-        "one",
+    say("%s: this step of %s is missing; create it, or give the pattern with "
+        "* for the number, which takes the files that are there",
         path, pattern);
     return SNOW_STATUS_BAD_INPUT;
+}
+
+/* %T names the iterations that exist, at any distance; so does any pattern if
+ * the files hold their times. */
+static int check_numbers(const options *opts, const char *pattern,
+                         frame_names *names, const numbers *list, int64_t first,
+                         const step_files *files) {
+    const int64_t step = step_of(list);
+    bool gaps = files->gaps || names->iterations;
+    int done = CONTINUE;
+    for (size_t i = 1; i < list->count && !gaps; i++)
+        if (list->items[i].value - list->items[i - 1].value != step) {
+            gaps = hold_times(opts, files, first);
+            break;
+        }
+    for (size_t i = 1; i < list->count && done == CONTINUE; i++)
+        done = check_next(pattern, names, &list->items[i], step, gaps);
+    return done;
 }
 
 static int add_numbers(const char *pattern, frame_names *names, const char *set,
                        const numbers *list, step_files *out) {
     char path[2 * PATH_MAX];
-    int64_t step = step_of(list);
     int done = CONTINUE;
     for (size_t i = 0; i < list->count && done == CONTINUE; i++) {
         const number *item = &list->items[i];
-        names->digits = item->digits;
-        if (i)
-            done = check_next(pattern, names, item, step, out->gaps);
-        if (done != CONTINUE)
-            return done;
         names->digits = item->digits;
         if (!names_path(names, item->value, path, PATH_MAX))
             continue;
@@ -171,7 +208,9 @@ static const char *set_in(const char *pattern) {
     return found;
 }
 
-static int add_pattern(const char *pattern, step_files *out) {
+static int add_pattern(const options *opts, const char *pattern,
+                       step_files *out) {
+    const int64_t first = out->count;
     frame_names names;
     numbers list = {NULL, 0, 0};
     char file[PATH_MAX];
@@ -187,6 +226,8 @@ static int add_pattern(const char *pattern, step_files *out) {
     int done = find_numbers(file, &names, &list);
     if (done == CONTINUE)
         done = add_numbers(pattern, &names, set, &list, out);
+    if (done == CONTINUE)
+        done = check_numbers(opts, pattern, &names, &list, first, out);
     free(list.items);
     return done;
 }
@@ -197,6 +238,50 @@ bool files_are_meant(const char *path) {
     const char *set = set_in(path), *sign = strchr(file, '%');
     /* of a file that is there, the data set may have a pattern */
     return sign && !is_there(file) && !(set && sign > file + (set - path));
+}
+
+/* Numbers in names count as such. */
+static int by_name(const void *a, const void *b) {
+    const char *x = *(char *const *)a, *y = *(char *const *)b;
+    while (*x && *y) {
+        if (isdigit((unsigned char)*x) && isdigit((unsigned char)*y)) {
+            char *x_end, *y_end;
+            const unsigned long long first = strtoull(x, &x_end, 10);
+            const unsigned long long second = strtoull(y, &y_end, 10);
+            if (first != second)
+                return first < second ? -1 : 1;
+            x = x_end;
+            y = y_end;
+        } else if (*x != *y) {
+            break;
+        } else {
+            x++;
+            y++;
+        }
+    }
+    return (unsigned char)*x - (unsigned char)*y;
+}
+
+/* Adds what matches a name with * or ?; false where that is one file's name, or
+ * nothing matches. */
+static bool add_matches(const char *path, step_files *out, int *done) {
+    char file[PATH_MAX], whole[2 * PATH_MAX];
+    const char *set = set_in(path);
+    const size_t length = set ? (size_t)(set - path) : strlen(path);
+    glob_t found;
+    if (length >= sizeof file || is_there(path))
+        return false;
+    snprintf(file, sizeof file, "%.*s", (int)length, path);
+    if (!strpbrk(file, "*?") || is_there(file) ||
+        glob(file, GLOB_NOSORT, NULL, &found) != 0)
+        return false;
+    qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv, by_name);
+    for (size_t i = 0; i < found.gl_pathc && *done == CONTINUE; i++) {
+        snprintf(whole, sizeof whole, "%s%s", found.gl_pathv[i], path + length);
+        *done = add_path(out, whole);
+    }
+    globfree(&found);
+    return true;
 }
 
 /* A missing file must be found now, not in the ninetieth minute of the
@@ -219,8 +304,10 @@ int steps_find(const options *opts, step_files *out) {
     int done = CONTINUE;
     for (int i = 0; i < opts->operand_count && done == CONTINUE; i++) {
         const char *path = opts->operands[i];
-        done = files_are_meant(path) ? add_pattern(path, out)
-                                     : add_file(path, out);
+        if (files_are_meant(path))
+            done = add_pattern(opts, path, out);
+        else if (!add_matches(path, out, &done))
+            done = add_file(path, out);
     }
     return done;
 }

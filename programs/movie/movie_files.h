@@ -19,8 +19,10 @@ typedef struct step_files {
 bool files_are_meant(const char *path);
 
 /* Finds the files.  A pattern stands for all existing files.  A missing number
- * between them is an error, except of %T, as is a missing file.  Returns
- * CONTINUE or an exit code. */
+ * between them is an error, except of %T and where each file holds a time of
+ * its own, as is a missing file.  A name with * or ? that nothing has stands
+ * for those that match, run_2 before run_10.  Returns CONTINUE or an exit code.
+ */
 int steps_find(const options *opts, step_files *out);
 void steps_free(step_files *files);
 

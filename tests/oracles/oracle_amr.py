@@ -67,7 +67,14 @@ def box_text(first, last):
                                        (first, last, [0] * len(first))))
 
 
-def plotfile(path, grid, fields, kind="<f8", time=0.25, ghosts=0, shift=0):
+def rows(values):
+    """Extremes as Cell_H has them: boxes and components, then a row each."""
+    return ["", f"{len(values)},{len(values[0])}",
+            *("".join(f"{v:.17e}," for v in row) for row in values)]
+
+
+def plotfile(path, grid, fields, kind="<f8", time=0.25, ghosts=0, shift=0,
+             version=1):
     """Writes a plotfile, whose domain begins at cell `shift` of level 0."""
     dim, levels = len(grid.cells), len(grid.boxes)
     bytes_each = np.dtype(kind).itemsize
@@ -87,8 +94,8 @@ def plotfile(path, grid, fields, kind="<f8", time=0.25, ghosts=0, shift=0):
     for level, boxes in enumerate(grid.boxes):
         os.makedirs(f"{path}/Level_{level}")
         head += [f"{level} {len(boxes)} {time}", 0]
-        cell = [1, 1, len(fields), ghosts, f"({len(boxes)} 0"]
-        places = []
+        cell = [version, 1, len(fields), ghosts, f"({len(boxes)} 0"]
+        places, extremes = [], []
         for number, (first, last) in enumerate(boxes):
             name = f"Cell_D_{number % 2:05d}"
             first, last = np.array(first), np.array(last)
@@ -100,13 +107,23 @@ def plotfile(path, grid, fields, kind="<f8", time=0.25, ghosts=0, shift=0):
                 places.append(f"FabOnDisk: {name} {file.tell()}")
                 around = box_text(first + move[level] - ghosts,
                                   last + move[level] + ghosts)
-                file.write(f"FAB {bits}{around} {len(fields)}\n".encode())
+                if version == 1:
+                    file.write(f"FAB {bits}{around} {len(fields)}\n".encode())
+                extremes.append([])
                 for field in fields.values():
                     v = grid.values(field, level, first, last)
+                    extremes[-1].append((np.nanmin(v), np.nanmax(v)))
                     v = np.pad(v, ghosts, constant_values=COVERED)
                     file.write(v.astype(kind).tobytes())
-        cell += [")", len(boxes), *places, "", f"{len(boxes)},{len(fields)}"]
-        cell += ["0," * len(fields)] * len(boxes)
+        cell += [")", len(boxes), *places]
+        extremes = np.array(extremes)
+        if version in (1, 3):
+            cell += [*rows(extremes[..., 0]), *rows(extremes[..., 1]), ""]
+        if version == 4:
+            cell += ["", *("".join(f"{v}," for v in row) for row in
+                           (extremes[..., 0].min(0), extremes[..., 1].max(0)))]
+        if version > 1:
+            cell += ["", bits]
         oracle.put(f"{path}/Level_{level}/Cell_H",
                    "\n".join(map(str, cell)) + "\n")
         head.append(f"Level_{level}/Cell")
@@ -372,6 +389,76 @@ done = oracle.tool("movie", "-q", "-y", "plt%05d", "-o",
 if done.returncode or not os.path.exists("f_2.png"):
     oracle.fail("movie", done.stderr.strip())
 
+# Steps at any distance are taken where each has its time (amr.plot_per).
+for step in (37, 71):
+    plotfile(f"per{step:05d}", GAP, {"rho": plane}, time=step / 8)
+plotfile("per00000", GAP, {"rho": plane}, time=0)
+for name, prefix in (("per%05d", "i"), ("per*", "j")):
+    done = oracle.tool("movie", "-q", "-y", name, "-o", prefix + "_%d.png",
+                       "--size", "64x64")
+    if done.returncode or not os.path.exists(prefix + "_2.png"):
+        oracle.fail(name, done.stderr.strip())
+plotfile("per00071", GAP, {"rho": plane}, time=37 / 8)
+done = oracle.tool("movie", "per%05d", "-o", "k_%d.png")
+if "per00034: this step of per%05d is missing" not in done.stderr:
+    oracle.fail("per%05d", done.stderr.strip())
+
+# FABs without headers: of versions 2 to 4 of Cell_H.
+for version, kind in ((2, ">f4"), (3, "<f8"), (4, "<f4")):
+    plotfile("plt", FLAT, {"hill": hill, "rho": plane}, kind, ghosts=1,
+             version=version)
+    check("plt", FLAT, plane, 1e-5, 2e-6, ["--component", "rho"],
+          f"version {version}")
+
+# A block that lost bytes, where the offsets are those of what is left, and so
+# reads the next one; one with other values than its extremes, which mean nothing
+# beside NaN; one that ends with its file.
+LINE = Grid((16, 8, 8), (), [split((0, 0, 0), (15, 7, 7), 8)])
+DATA = "plt/Level_0/Cell_D_00000"
+for version, kind in ((1, "<f8"), (3, ">f4")):
+    plotfile("plt", LINE, {"rho": plane, "one": plane}, kind, version=version)
+    cells = [oracle.got(f"{DATA[:-1]}{i}") for i in (0, 1)]
+    text = oracle.got("plt/Level_0/Cell_H")
+    both = text.replace(b"Cell_D_00001 0", b"Cell_D_00000 %d")
+    for lost in (0, 1, 512):
+        left = len(cells[0]) - lost
+        oracle.put("plt/Level_0/Cell_H", both % left)
+        oracle.put(DATA, cells[0][:left] + cells[1])
+        for component in ("0", "1"):
+            if lost:
+                oracle.refuse("plt", "the next box begins before",
+                              ["--component", component])
+            else:
+                check("plt", LINE, plane, 2e-6, 1e-6,
+                      ["--component", component], "one file")
+    oracle.put("plt/Level_0/Cell_H", text)
+    width = np.dtype(kind).itemsize
+    half = len(cells[0]) - 512 * width
+    for value, fits in ((7, False), (9.5, True)):
+        value = np.array([value], kind).tobytes()
+        broken = cells[0][:half - width] + value + cells[0][half:]
+        oracle.put(DATA, broken)
+        if fits:
+            oracle.tells("plt", format="amrex")
+            continue
+        for crop in (":,:,:", "7:8,7:8,7:8"):
+            oracle.refuse("plt", "where its Cell_H has", ["--crop", crop])
+        for crop in ("8:,:,:", ":,:,0:7"):
+            oracle.tells("plt", ["--crop", crop], format="amrex")
+        oracle.tells("plt", ["--component", "one"], quantity="one")
+        nan = np.array([np.nan], kind).tobytes()
+        at = half - 512 * width
+        oracle.put(DATA, broken[:at] + nan + broken[at + width:])
+        oracle.tells("plt", ["--crop", "7:8,7:8,7:8"], dims=[1, 1, 1])
+    oracle.put(DATA, cells[0][:-1])
+    oracle.refuse("plt", "truncated")
+    oracle.put(DATA, cells[0])
+    oracle.put("plt/Level_0/Cell_H", text[:text.rindex(b"2,2")])
+    if version == 1:
+        oracle.tells("plt", format="amrex")
+    oracle.put("plt/Level_0/Cell_H", text[:text.rindex(b"2,2") + 9])
+    oracle.refuse("plt", "ends before the extremes of boxes")
+
 # What is damaged is refused.
 plotfile("good", TWO, {"rho": hill})
 
@@ -394,7 +481,9 @@ spoil(HEAD, "cannot be opened", b"Level_1/Cell", b"Level_7/Cell")
 spoil(HEAD, "more than any file", b"(127,127,127)", b"(4294967295,127,127)")
 spoil(CELL, "box 2 has cells", b"(51,43,30)", b"(51,143,30)")
 spoil(CELL, "should be a box", b"(51,43,30)", b"(51,43)")
-spoil(CELL, "headerversion", b"1\n1\n1\n", b"2\n1\n1\n")
+spoil(CELL, "headerversion", b"1\n1\n1\n", b"5\n1\n1\n")
+spoil(CELL, "the type of its values", b"1\n1\n1\n", b"2\n1\n1\n")
+spoil(CELL, "number of boxes and components", b"\n3,1\n", b"\n3,2\n")
 spoil(CELL, "should be the number of boxes", b"(3 0", b"(4000001 0")
 spoil(CELL, "not the header of values", b"Cell_D_00000 0", b"Cell_D_00000 8")
 spoil(CELL, "values of a box", b"Cell_D_00000 0", b"Cell_D_00000 99999999")

@@ -22,6 +22,7 @@
 
 #define AMR_MOST_LEVELS 24
 #define AMR_MOST_BOXES 4000000
+#define AMR_MOST_COMPONENTS 100000
 
 /* Cells of a level; `box` counts them from the corner of the grid. */
 typedef struct amr_box {
@@ -98,9 +99,18 @@ typedef snow_status amr_open_fn(void *user, const char *name,
 
 /* Where the values of a box are: a FAB, one component after another. */
 typedef struct amr_fab {
-    size_t name; /* of its file, in a block of names */
-    int64_t offset;
+    size_t name;         /* of its file, in a block of names */
+    int64_t offset, end; /* of the file; or where its next FAB begins */
+    double low, high;    /* of the component, without ghosts; NaN: not known */
 } amr_fab;
+
+/* What all FABs of a level have alike. */
+typedef struct amr_fabs {
+    int64_t components;
+    bool bare; /* they have no headers, and these are of all */
+    snow_type type;
+    bool big_endian;
+} amr_fabs;
 
 typedef struct amr_plotfile {
     snow_context *context;
@@ -113,6 +123,7 @@ typedef struct amr_plotfile {
     double time;
     int64_t first[AMR_MOST_LEVELS][3]; /* of a level's cells: the corner */
     int64_t ghosts[AMR_MOST_LEVELS][3];
+    amr_fabs level[AMR_MOST_LEVELS];
     amr_fab *fabs; /* one for each box */
     char *names;
     size_t names_used;
@@ -122,6 +133,11 @@ typedef struct amr_plotfile {
  * SNOW_STATUS_BAD_INPUT, SNOW_STATUS_NO_MEMORY. */
 snow_status snow_plotfile_read_boxes(amr_plotfile *file, int level,
                                      const char *name);
+
+/* Takes the type from the numbers of a header, as IEEE 754 has it; how many
+ * are used. */
+bool snow_plotfile_take_type(const int64_t *numbers, int count, int *used,
+                             snow_type *type, bool *big_endian);
 
 /* Finds the type of the values of a box; reads a part of it (amr_read_fn).
  * Errors: SNOW_STATUS_BAD_INPUT, SNOW_STATUS_NO_MEMORY. */

@@ -13,20 +13,34 @@
  *     FabOnDisk: Cell_D_00000 0            file, offset in bytes
  *     FabOnDisk: Cell_D_00000 163909
  *
- * and then the extremes of each, which are not needed.  After
- * AMReX_VisMF.cpp. */
+ *
+ *     2,5                                  least values: boxes, components
+ *     1.0e+00,0.0e+00,0.0e+00,2.0e+00,3.0e+00,
+ *     1.5e+00,0.0e+00,0.0e+00,2.0e+00,3.0e+00,
+ *
+ *     2,5                                  greatest values
+ *     ...
+ *
+ * Versions 2 and 4 lack the extremes of boxes.  Of version 2 on the type, which
+ * is in each FAB's header else, ends the file.  After AMReX_VisMF.cpp. */
 #include "formats/amr/amr.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define LINE_BYTES 4096
+
+/* Bytes of a number in a list of extremes, and its comma. */
+#define NUMBER_BYTES 40
 
 /* How a line is read. */
 typedef struct reading {
     amr_plotfile *file;
     snow_source *source;
     int level;
+    int64_t version;
     char line[LINE_BYTES];
 } reading;
 
@@ -52,15 +66,17 @@ static snow_status take_front(reading *r, int64_t *boxes) {
     int64_t *ghosts = r->file->ghosts[r->level];
     int count;
     SNOW_TRY(take_line(r, "a version", 1, 1, values, &count));
-    if (values[0] != 1)
+    r->version = values[0];
+    if (r->version < 1 || r->version > 4)
         return snow_fail(r->file->context, SNOW_STATUS_BAD_INPUT,
-                         "has version %lld, whose boxes have no headers of "
-                         "their own; write it with vismf.headerversion = 1",
+                         "has version %lld, which is not known; write it with "
+                         "vismf.headerversion = 1",
                          (long long)values[0]);
     SNOW_TRY(take_line(r, "how it was written", 1, 1, values, &count));
     SNOW_TRY(take_line(r, "the number of components", 1, 1, values, &count));
-    if (values[0] < r->file->components)
+    if (values[0] < r->file->components || values[0] > AMR_MOST_COMPONENTS)
         return fail_boxes(r, "the number of components of the header");
+    r->file->level[r->level].components = values[0];
     SNOW_TRY(take_line(r, "the ghost cells", 1, 3, values, &count));
     for (int i = 0; i < 3; i++) {
         ghosts[i] = i < r->file->axes ? values[i < count ? i : 0] : 0;
@@ -121,10 +137,121 @@ static snow_status take_place(reading *r, const char *folder, size_t number) {
     memcpy(to, folder, front);
     memcpy(to + front, name, length);
     to[front + length] = 0;
-    file->fabs[number] = (amr_fab){file->names_used, offset};
+    file->fabs[number] =
+        (amr_fab){file->names_used, offset, INT64_MAX, NAN, NAN};
     file->names_used += front + length + 1;
     return SNOW_STATUS_OK;
 }
+
+/* --- the end of each FAB -------------------------------------------------- */
+
+typedef struct place {
+    const char *name;
+    amr_fab *fab;
+} place;
+
+static int by_place(const void *a, const void *b) {
+    const place *x = a, *y = b;
+    const int names = strcmp(x->name, y->name);
+    return names ? names
+                 : (x->fab->offset > y->fab->offset) -
+                       (x->fab->offset < y->fab->offset);
+}
+
+/* FABs of one file end where the next one begins. */
+static snow_status find_ends(const amr_plotfile *file, size_t first,
+                             size_t count) {
+    place *places = snow_allocate_array(file->context, count, sizeof *places);
+    if (!places)
+        return SNOW_STATUS_NO_MEMORY;
+    for (size_t i = 0; i < count; i++) {
+        amr_fab *fab = &file->fabs[first + i];
+        places[i] = (place){file->names + fab->name, fab};
+    }
+    qsort(places, count, sizeof *places, by_place);
+    for (size_t i = count; i-- > 1;)
+        if (!strcmp(places[i].name, places[i - 1].name))
+            places[i - 1].fab->end = places[i].fab->offset;
+    snow_release(file->context, places);
+    return SNOW_STATUS_OK;
+}
+
+/* --- extremes ------------------------------------------------------------- */
+
+/* The next line that is not empty; false at the end. */
+static snow_status next_words(reading *r, bool *got) {
+    do
+        SNOW_TRY(snow_source_read_line(r->source, r->line, LINE_BYTES, got));
+    while (*got && !r->line[strspn(r->line, " \t")]);
+    return SNOW_STATUS_OK;
+}
+
+/* A number of a line of them; NaN if it is none. */
+static double number_in(const char *line, int64_t index) {
+    char word[NUMBER_BYTES];
+    double value;
+    for (; line && index > 0; index--)
+        line = (line = strchr(line, ',')) ? line + 1 : NULL;
+    if (!line)
+        return NAN;
+    snprintf(word, sizeof word, "%.*s", (int)strcspn(line, ","), line);
+    return snow_parse_double(word + strspn(word, " \t"), &value) ? value : NAN;
+}
+
+/* Lines of one box each, with a number of each component. */
+static snow_status take_rows(reading *r, size_t first, size_t count,
+                             bool highest) {
+    const amr_plotfile *file = r->file;
+    const int64_t components = file->level[r->level].components;
+    const size_t bytes = (size_t)components * NUMBER_BYTES + NUMBER_BYTES;
+    char *line = snow_allocate(file->context, bytes);
+    snow_status status = line ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+    for (size_t i = 0; i < count && status == SNOW_STATUS_OK; i++) {
+        amr_fab *fab = &file->fabs[first + i];
+        status = snow_amr_line(r->source, line, bytes, "the extremes of boxes");
+        if (status == SNOW_STATUS_OK)
+            *(highest ? &fab->high : &fab->low) =
+                number_in(line, file->component);
+    }
+    snow_release(file->context, line);
+    return status;
+}
+
+/* Old files may end before. */
+static snow_status take_extremes(reading *r, size_t first, size_t count) {
+    for (int i = 0; i < 2; i++) {
+        int64_t sizes[2];
+        bool got;
+        SNOW_TRY(next_words(r, &got));
+        if (!got)
+            return SNOW_STATUS_OK;
+        if (snow_amr_integers(r->line, sizes, 2) != 2 ||
+            sizes[0] != (int64_t)count ||
+            (count && sizes[1] != r->file->level[r->level].components))
+            return fail_boxes(r, "the number of boxes and components");
+        SNOW_TRY(take_rows(r, first, count, i > 0));
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* The type that FABs without headers have, in the last line. */
+static snow_status take_type(reading *r) {
+    amr_fabs *fabs = &r->file->level[r->level];
+    int64_t numbers[32];
+    bool got;
+    int used;
+    SNOW_TRY(next_words(r, &got));
+    for (int i = 0; i < 2 && r->version == 4; i++)
+        SNOW_TRY(next_words(r, &got));
+    const int count = got ? snow_amr_integers(r->line, numbers, 32) : 0;
+    fabs->bare = true;
+    return snow_plotfile_take_type(numbers, count, &used, &fabs->type,
+                                   &fabs->big_endian)
+               ? SNOW_STATUS_OK
+               : fail_boxes(r, "the type of its values");
+}
+
+/* --- all of it ------------------------------------------------------------ */
 
 static snow_status take_all(reading *r, const char *folder) {
     const size_t first = r->file->grid.count;
@@ -139,7 +266,10 @@ static snow_status take_all(reading *r, const char *folder) {
         return fail_boxes(r, "the number of boxes");
     for (int64_t i = 0; i < boxes; i++)
         SNOW_TRY(take_place(r, folder, first + (size_t)i));
-    return SNOW_STATUS_OK;
+    SNOW_TRY(find_ends(r->file, first, (size_t)boxes));
+    if (r->version == 1 || r->version == 3)
+        SNOW_TRY(take_extremes(r, first, (size_t)boxes));
+    return r->version > 1 ? take_type(r) : SNOW_STATUS_OK;
 }
 
 snow_status snow_plotfile_read_boxes(amr_plotfile *file, int level,

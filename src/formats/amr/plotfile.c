@@ -34,7 +34,6 @@
 #include <string.h>
 
 #define LINE_BYTES 8192
-#define MOST_COMPONENTS 100000
 
 /* The header while it is read. */
 typedef struct reading {
@@ -131,7 +130,7 @@ static snow_status check_component(const reading *r, int64_t found) {
 static snow_status take_components(reading *r) {
     amr_plotfile *file = &r->file;
     int64_t wanted;
-    SNOW_TRY(take_number(r, "a number of components", 1, MOST_COMPONENTS,
+    SNOW_TRY(take_number(r, "a number of components", 1, AMR_MOST_COMPONENTS,
                          &file->components));
     SNOW_TRY(wanted_component(r, &wanted));
     for (int64_t i = 0; i < file->components; i++) {
