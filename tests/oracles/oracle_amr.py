@@ -1,6 +1,6 @@
 """Levels of refinement, each with an analytic field at the centres of its cells:
 plotfiles of AMReX, written here by the published format and read by VTK too, and
-.vth as VTK writes them.  Cells below finer ones hold 1e30, which must not be
+.vth as VTK writes them; FLASH, Athena++ and VTKHDF by h5py.  Cells below finer ones hold 1e30, which must not be
 seen."""
 import functools
 import os
@@ -10,7 +10,8 @@ import shutil
 import oracle
 from oracle import np
 
-vtk, = oracle.need("vtk")
+vtk, h5py = oracle.need("vtk", "h5py")
+oracle.need_modules()
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 COVERED = 1e30
@@ -458,6 +459,230 @@ for version, kind in ((1, "<f8"), (3, ">f4")):
         oracle.tells("plt", format="amrex")
     oracle.put("plt/Level_0/Cell_H", text[:text.rindex(b"2,2") + 9])
     oracle.refuse("plt", "ends before the extremes of boxes")
+
+# Blocks of FLASH and Athena++, which halve each other's cells, in any order.
+class Tree:
+    """Leaves and their parents, (level, (i, j, k)), refined around a place."""
+
+    def __init__(self, base, cells, levels, low, high, seed=1):
+        self.cells = np.array(cells)
+        base = np.array(base)
+        halves = [2 if n > 1 else 1 for n in base * cells]
+        self.grid = Grid(base * cells, (halves,) * (levels - 1), [[]] * levels,
+                         low, high)
+        self.leaves, self.parents = [], []
+        todo = [(0, at) for at in np.ndindex(*base)]
+        for level, at in todo:
+            middle = (np.array(at) + .5) / (base * np.array(halves)**level)
+            near = np.abs(middle - (.4, .55, .6))[:sum(h > 1 for h in halves)]
+            if level + 1 < levels and near.max() < .35 / 2**level:
+                self.parents.append((level, at))
+                todo += [(level + 1, tuple(np.array(at) * halves + half))
+                         for half in np.ndindex(*halves)]
+            else:
+                self.leaves.append((level, at))
+        np.random.default_rng(seed).shuffle(self.leaves)
+
+    def values(self, field, level, at, ghosts=0):
+        first = np.array(at) * self.cells
+        v = np.array(field(*self.grid.centres(
+            level, first, first + self.cells - 1)), float)
+        wide = [ghosts if n > 1 else 0 for n in self.grid.cells[::-1]]
+        return np.pad(v, [(g, g) for g in wide], constant_values=COVERED)
+
+    def faces(self, level, at, axis, ghosts=0):
+        g = ghosts if self.grid.cells[axis] > 1 else 0
+        step = self.grid.steps[level][axis]
+        first = at[axis] * self.cells[axis]
+        return self.grid.low[axis] + step * np.arange(
+            first - g, first + self.cells[axis] + g + 1)
+
+
+def pairs(file, name, kind, values):
+    kind = np.dtype([("name", "S80"), ("value", kind)])
+    file[name] = np.array([(k.ljust(80).encode(), v) for k, v in values], kind)
+
+
+def flash(path, tree, fields, geometry="cartesian", kind="f8", axes=3,
+          leaves=None):
+    """Parents have values that must not be seen."""
+    leaves = tree.leaves if leaves is None else leaves
+    blocks = tree.parents[:1] + leaves + tree.parents[1:]
+    leaf = [False] * bool(tree.parents) + [True] * len(leaves)
+    leaf += [False] * (len(blocks) - len(leaf))
+    with h5py.File(path, "w") as file:
+        box = np.array([[tree.faces(level, at, i)[[0, -1]] for i in range(axes)]
+                        for level, at in blocks])
+        file["bounding box"], file["block size"] = box, box[..., 1] - box[..., 0]
+        file["coordinates"] = box.mean(2)
+        file["refine level"] = np.array([n + 1 for n, _ in blocks], "i4")
+        file["node type"] = np.where(leaf, 1, 2).astype("i4")
+        file["gid"] = np.zeros((len(blocks), 15), "i4")
+        file["unknown names"] = np.array([[name] for name in fields], "S4")
+        for name, field in fields.items():
+            file[name] = np.array([
+                tree.values(field, *block) if is_leaf else
+                np.full(tree.cells[::-1], COVERED)
+                for block, is_leaf in zip(blocks, leaf)]).astype(kind)
+        pairs(file, "real scalars", "f8", [("dt", 0.1), ("time", 2.5)])
+        pairs(file, "real runtime parameters", "f8",
+              [(axis + end, side[i]) for i, axis in enumerate("xyz")
+               for end, side in (("min", tree.grid.low), ("max", tree.grid.high))
+               if i < len(side)])
+        pairs(file, "string runtime parameters", "S80",
+              [("basenm", b"run_"), ("geometry", geometry.ljust(80).encode())])
+
+
+def athena(path, tree, fields, ghosts=0, kind="f4", coordinates="cartesian",
+           leaves=None, bend=0):
+    leaves = tree.leaves if leaves is None else leaves
+    with h5py.File(path, "w") as file:
+        file.attrs.update(
+            Coordinates=np.bytes_(coordinates), Time=0.75, NumCycles=3,
+            MaxLevel=np.int32(2), NumMeshBlocks=np.int32(len(leaves)),
+            RootGridSize=tree.grid.cells.astype("i4"),
+            MeshBlockSize=(tree.cells + 2 * ghosts).astype("i4"),
+            DatasetNames=np.array(["prim", "B"], "S21"),
+            NumVariables=np.array([len(fields), 1], "i4"),
+            VariableNames=np.array([*fields, "Bcc1"], "S21"))
+        prim = [[tree.values(f, *block, ghosts) for block in leaves]
+                for f in fields.values()]
+        file["prim"] = np.array(prim).astype(kind)
+        file["B"] = -np.array(prim[:1]).astype(kind)
+        file["Levels"] = np.array([n for n, _ in leaves], "i4")
+        file["LogicalLocations"] = np.array([at for _, at in leaves], "i8")
+        for i in range(3):
+            x = np.array([tree.faces(*block, i, ghosts) for block in leaves])
+            file[f"x{i + 1}f"] = (x + bend * (x - tree.grid.low[i])**2).astype(kind)
+
+
+DEEP = Tree((2, 3, 2), (4, 6, 8), 3, (-1, 2, 5), (2, 4, 6))
+PLANE = Tree((3, 2, 1), (6, 4, 1), 3, (-1, 2, 0), (2, 4, 1))
+UNIFORM = Tree((3, 2, 2), (4, 6, 8), 1, (-1, 2, 5), (2, 4, 6))
+for tree in (DEEP, UNIFORM):
+    flash("f_0001", tree, {"dens": plane, "temp": hill})
+    check("f_0001", tree.grid, plane, 1e-12, 1e-12, name="FLASH")
+    check("f_0001:/dens", tree.grid, plane, 1e-12, 1e-12, name="FLASH /dens")
+    athena("a.athdf", tree, {"rho": hill, "press": plane}, 2, "f8")
+    check("a.athdf", tree.grid, plane, 1e-12, 1e-12, ["--dataset", "press"])
+    check("a.athdf", tree.grid, lambda x, y, z: -hill(x, y, z), .3, .05,
+          ["--dataset", "Bcc1"])
+    athena("a.athdf", tree, {"rho": hill, "press": plane})
+    for options in (["--dataset", "prim", "--channel", 1], ["--channel", 1]):
+        check("a.athdf", tree.grid, plane, 1e-5, 1e-6, options, "Athena++")
+oracle.tells("a.athdf", time_value=0.75, quantity="rho", storage="1 level, boxes 12")
+UNIT = Tree((4, 4, 4), (8, 8, 8), 3, (0, 0, 0), (1, 1, 1))
+flash("f_0001", UNIT, {"dens": hill}, kind="f4")
+oracle.tells("f_0001", time_value=2.5, quantity="dens", type="float32")
+compare("f_0001", UNIT.grid, hill, *LOOK)
+# Fewer levels: their cells are means of the leaves in them.
+flash("f_0001", DEEP, {"dens": plane})
+athena("a.athdf", DEEP, {"rho": plane}, 1, "f8")
+for levels in (1, 2):
+    few = Grid(DEEP.grid.cells, DEEP.grid.ratios[:levels - 1], [[]] * levels,
+               DEEP.grid.low, DEEP.grid.high)
+    if levels == 1:
+        oracle.says("FLASH", "f_0001", "too few cells", "--levels", "1")
+    else:
+        check("f_0001", few, plane, 1e-12, 1e-12, ["--levels", levels])
+        check("a.athdf", few, plane, 1e-12, 1e-12, ["--levels", levels])
+sheet = lambda x, y, z: plane(x, y, 0 * z)
+for write, options in ((flash, {}), (flash, {"axes": 2}),
+                       (athena, {"ghosts": 2, "kind": "f8"})):
+    write("sheet.h5", PLANE, {"rho": sheet}, **options)
+    voxels, matrix = oracle.voxels_of("sheet.h5")
+    if voxels is None or voxels.shape != tuple(PLANE.grid.all[-1][::-1]) or \
+            np.abs(voxels - PLANE.grid.finest(sheet)).max() > 1e-12 or \
+            not np.allclose(matrix[:2, 3], (PLANE.grid.low + PLANE.grid.steps[-1] / 2)[:2]):
+        oracle.fail(f"sheet {options}", "is not the field")
+for write, path in ((flash, "f_0001"), (athena, "a.athdf")):
+    some = DEEP.leaves
+    write(path, DEEP, {"rho": plane}, leaves=some[1:])
+    oracle.refuse(path, "lacks blocks")
+    write(path, DEEP, {"rho": plane}, leaves=some[:1] + some[1:-1] + some[:1])
+    oracle.refuse(path, "two blocks in one place")
+    last = [(n, at) for n, at in some if at[0] < 2**n]
+    write(path, DEEP, {"rho": plane}, leaves=last)
+    oracle.refuse(path, "damaged" if write is athena else "lacks blocks")
+flash("f_0001", DEEP, {"dens": plane}, "cylindrical")
+oracle.refuse("f_0001", "FLASH in cylindrical coordinates")
+athena("a.athdf", DEEP, {"rho": plane}, coordinates="spherical_polar")
+oracle.refuse("a.athdf", "Athena++ in spherical_polar coordinates")
+athena("a.athdf", DEEP, {"rho": plane}, bend=.1, kind="f8")
+oracle.refuse("a.athdf", "uneven sizes along x1")
+athena("a.athdf", DEEP, {"rho": plane})
+oracle.tells("a.athdf", ["--dataset", "/x2f"], quantity="x2f")
+oracle.refuse("a.athdf", "no such data set", ["--dataset", "temp"], 2)
+oracle.refuse("a.athdf", "there are 2 variables", ["--channel", 2], 2)
+oracle.refuse("a.athdf", "have one value", ["--component", "x"], 2)
+
+
+def vtkhdf(path, grid, fields, kind="f8", steps=None, more="s", version=(2, 3)):
+    """Boxes of the levels; of `steps`, each with its own number and values."""
+    with h5py.File(path, "w") as file:
+        root = file.create_group("VTKHDF")
+        root.attrs.update(Version=np.array(version), Type=np.bytes_("OverlappingAMR"),
+                          GridDescription=np.bytes_("XYZ"), Origin=grid.low)
+        for level, boxes in enumerate(grid.boxes):
+            group = root.create_group(f"Level{level}")
+            group.attrs["Spacing"] = grid.steps[level]
+            group["AMRBox"] = np.array([[end for pair in zip(a, b) for end in pair]
+                                        for a, b in boxes] * (steps or 1), "i4")
+            for name, field in fields.items():
+                group[f"CellData/{name}"] = np.concatenate([
+                    np.stack([grid.values(lambda x, y, z: f(x, y, z) + step,
+                                          level, *box).ravel()
+                              for f in np.atleast_1d(field)], -1).squeeze()
+                    for step in range(steps or 1) for box in boxes]).astype(kind)
+                cells = len(group[f"CellData/{name}"]) // (steps or 1)
+                if steps:
+                    root[f"Steps/Level{level}/CellDataOffset{more}/{name}"] = \
+                        np.arange(steps) * cells
+            if steps:
+                of = root[f"Steps/Level{level}"]
+                of["AMRBoxOffset" + more] = np.arange(steps) * len(boxes)
+                of["NumberOfAMRBox" + ("es" if more else "")] = \
+                    np.full(steps, len(boxes))
+        if steps:
+            root["Steps"].attrs["NSteps"] = steps
+            root["Steps/Values"] = np.arange(steps) / 8
+
+
+for grid, kind in ((TWO, "f8"), (FOUR, "f4"), (FLAT, "f8")):
+    vtkhdf("a.vtkhdf", grid, {"rho": plane, "v": [plane, hill, hill]}, kind)
+    check("a.vtkhdf", grid, plane, 1e-5, 1e-6, name="VTKHDF")
+check("a.vtkhdf", FLAT, plane, 1e-12, 1e-12,
+      ["--dataset", "/VTKHDF/Level0/CellData/v", "--component", "x"])
+oracle.tells("a.vtkhdf", ["--dataset", "v"], components=3, magnitude=True)
+oracle.refuse("a.vtkhdf", "the cells have rho, v", ["--dataset", "w"], 2)
+for more in ("", "s"):
+    vtkhdf("a.vtkhdf", FLAT, {"rho": plane}, steps=3, more=more)
+    check("a.vtkhdf", FLAT, lambda x, y, z: plane(x, y, z) + 2, 1e-12, 1e-12,
+          ["--time", "2"], "VTKHDF steps")
+    oracle.tells("a.vtkhdf", ["--time", "2"], times=3, time_value=0.25)
+with h5py.File("a.vtkhdf", "a") as file:
+    was = file["VTKHDF/Level1/CellData/rho"][:-1]
+    del file["VTKHDF/Level1/CellData/rho"]
+    file["VTKHDF/Level1/CellData/rho"] = was
+oracle.refuse("a.vtkhdf", "fewer values than its boxes", ["--time", "2"])
+with h5py.File("a.vtkhdf", "a") as file:
+    file.move("VTKHDF/Level0/CellData", "VTKHDF/Level0/PointData")
+oracle.refuse("a.vtkhdf", "write CellData")
+
+# Other codes are named, and what makes a volume of their files.
+for names, part in ((["Parameters and Global Attributes/All Parameters",
+                      "ADMBASE::lapse it=0 tl=0 rl=0 c=0"], "kuibit"),
+                    (["Chombo_global/x", "level_0/data:datatype=0"], "Chombo"),
+                    (["Grid00000001/Density"], "Enzo"),
+                    (["PartType0/Coordinates", "Header/x"], "particles"),
+                    (["coordx", "eb_status", "connect1"], "Exodus")):
+    with h5py.File("other.h5", "w") as file:
+        for name in names:
+            file[name] = np.zeros((4, 5, 6))
+    oracle.refuse("other.h5", part)
+with h5py.File("other.h5", "w") as file:
+    file.create_group("VTKHDF").attrs["Type"] = np.bytes_("UnstructuredGrid")
+oracle.refuse("other.h5", "of type UnstructuredGrid")
 
 # What is damaged is refused.
 plotfile("good", TWO, {"rho": hill})

@@ -14,7 +14,8 @@
  *   words.c     numbers in text between parentheses and commas
  *
  * A voxel is of the finest cell around it, its leaf.  Cells below finer ones
- * are not read; what stands in their place are the means of these. */
+ * are not read; what stands in their place are the means of these.  Files of
+ * HDF5 have such grids too (formats/hdf5/blocks.h). */
 #ifndef SNOW_FORMATS_AMR_AMR_H
 #define SNOW_FORMATS_AMR_AMR_H
 
@@ -46,7 +47,9 @@ typedef struct amr_grid {
     size_t count;
     amr_read_fn *read;
     void *user;
-    int finest; /* the level of the voxels */
+    bool leaves; /* there are no cells below finer ones: those beyond the level
+                    of the voxels are read as its cells, from means */
+    int finest;  /* the level of the voxels */
 } amr_grid;
 
 /* Whether the cells of all levels can be counted: to be called before boxes are
@@ -61,7 +64,8 @@ void snow_amr_free(amr_grid *grid);
 /* Cells of a level in the whole grid. */
 void snow_amr_cells(const amr_grid *grid, int level, int64_t out[3]);
 
-/* Chooses the level of the voxels; sets sizes, type, matrix and storage.
+/* Chooses the level of the voxels, and of leaves makes boxes beyond it boxes of
+ * it; sets sizes, type, matrix and storage.
  * Errors: SNOW_STATUS_BAD_INPUT (few boxes for such a grid). */
 snow_status snow_amr_describe(amr_grid *grid,
                               const snow_volume_options *options,

@@ -63,6 +63,18 @@ snow_status snow_amr_check(const amr_grid *grid) {
     return SNOW_STATUS_OK;
 }
 
+/* Makes a box of a level one of the level below, if that has it whole. */
+static bool divide(snow_box *box, const int64_t ratio[3]) {
+    for (int i = 0; i < 3; i++)
+        if (box->first[i] % ratio[i] || box->count[i] % ratio[i])
+            return false;
+    for (int i = 0; i < 3; i++) {
+        box->first[i] /= ratio[i];
+        box->count[i] /= ratio[i];
+    }
+    return true;
+}
+
 static double voxels_of(const amr_grid *grid, int level) {
     int64_t cells[3];
     snow_amr_cells(grid, level, cells);
@@ -70,9 +82,11 @@ static double voxels_of(const amr_grid *grid, int level) {
 }
 
 /* The first level covers its grid, or much of it: a few bytes must not make a
- * large one. */
+ * large one.  Leaves fill it together. */
 static snow_status check_cover(const amr_grid *grid) {
     double covered = 0;
+    if (grid->leaves)
+        return SNOW_STATUS_OK;
     for (size_t i = 0; i < grid->count; i++)
         if (grid->boxes[i].level == 0)
             covered += (double)snow_box_voxels(&grid->boxes[i].box);
@@ -84,12 +98,33 @@ static snow_status check_cover(const amr_grid *grid) {
                      covered, voxels_of(grid, 0));
 }
 
+/* The coarsest level whose cells can be means of whole boxes. */
+static int coarsest_of(const amr_grid *grid) {
+    int level = 0;
+    for (size_t n = 0; n < grid->count && grid->leaves; n++) {
+        const amr_box *box = &grid->boxes[n];
+        int at = box->level;
+        snow_box cells = box->box;
+        while (at > level && divide(&cells, grid->ratio[at]))
+            at--;
+        level = at > level ? at : level;
+    }
+    return level;
+}
+
 /* The finest level that is wanted and has few enough cells. */
 static void choose_level(amr_grid *grid, int64_t wanted) {
-    const int last =
+    const int least = coarsest_of(grid);
+    int last =
         (int)(wanted && wanted < grid->levels ? wanted : grid->levels) - 1;
+    if (last < least)
+        snow_notify(grid->context,
+                    "--levels %d: the blocks of this file have too few cells "
+                    "for that; %d levels are shown",
+                    last + 1, least + 1);
+    last = last < least ? least : last;
     grid->finest = last;
-    while (grid->finest > 0 && voxels_of(grid, grid->finest) > MOST_VOXELS)
+    while (grid->finest > least && voxels_of(grid, grid->finest) > MOST_VOXELS)
         grid->finest--;
     if (grid->finest < last)
         snow_notify(grid->context,
@@ -139,6 +174,11 @@ snow_status snow_amr_describe(amr_grid *grid,
         info->matrix[i][3] = grid->corner[i] + step / 2;
     }
     set_storage(grid, info);
+    for (size_t i = 0; i < grid->count && grid->leaves; i++) {
+        amr_box *box = &grid->boxes[i];
+        while (box->level > grid->finest)
+            (void)divide(&box->box, grid->ratio[box->level--]);
+    }
     if (grid->finest > 0 && !options->each_time)
         snow_notify(grid->context,
                     "%d levels are shown on the grid of the finest, "

@@ -6,6 +6,7 @@
 #include "formats/hdf5/hdf5.h"
 #include "formats/array.h"
 #include "formats/features.h"
+#include "formats/hdf5/blocks.h"
 #include "formats/hdf5/filters.h"
 
 #include <math.h>
@@ -56,7 +57,7 @@ static const char *filter_name(int filter) {
 
 /* Data in other files would be missing, or could be read from anywhere; data
  * with a filter that is not installed cannot be read. */
-static snow_status check_storage(snow_context *context, hid_t set) {
+snow_status snow_hdf5_check_storage(snow_context *context, hid_t set) {
     hid_t plan = H5Dget_create_plist(set);
     if (plan < 0)
         return snow_hdf5_fail(context, "its storage is not described");
@@ -226,7 +227,7 @@ static snow_status read_set(snow_context *context, const hdf5_file *file,
                             const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out) {
     hdf5_job job = {.context = context, .file = file, .set = set};
-    SNOW_TRY(check_storage(context, set->id));
+    SNOW_TRY(snow_hdf5_check_storage(context, set->id));
     snow_status status = read_job(&job, options, info, out);
     snow_cf_release(context, job.axes.scales, HDF5_MOST_AXES);
     return status;
@@ -277,6 +278,20 @@ static snow_status read_hdf5(snow_source *source,
     SNOW_TRY(snow_hdf5_open(source, &file));
     snow_status status = refuse_minc(context, snow_hdf5_id(file));
     if (status == SNOW_STATUS_OK)
+        status = snow_hdf5_refuse_strangers(context, file, options->dataset);
+    bool found = false;
+    if (status == SNOW_STATUS_OK)
+        status =
+            snow_hdf5_read_leaves(context, file, options, info, out, &found);
+    if (status == SNOW_STATUS_OK && !found)
+        status = snow_hdf5_read_overlapping(context, file, options, info, out,
+                                            &found);
+    if (status == SNOW_STATUS_OK && !found && options->levels)
+        status = snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                           "--levels %lld: this file has no levels of "
+                           "refinement; remove the option",
+                           (long long)options->levels);
+    if (status == SNOW_STATUS_OK && !found)
         status = read_step(context, file, options, info, out);
     snow_hdf5_close(file);
     return status;
@@ -300,5 +315,6 @@ const snow_format snow_format_hdf5 = {
     .crops = true,
     .sets = true,
     .channels = true,
+    .levels = true,
     .read = read_hdf5,
 };

@@ -8,6 +8,8 @@
  *   meaning.c attributes -> quantity, unit, time, conversion of values
  *   imaris.c  Imaris' own attributes -> sizes, geometry
  *   vtkhdf.c  VTK's own attributes -> geometry, time
+ *   blocks.h  blocks of refinement -> one grid
+ *   strangers.c  files of codes that are not read -> what converts them
  *   filters.c the stored bytes of a chunk -> its elements
  *   chunks.c  chunks, or what else is stored -> a box of elements
  *   hdf5.c    a box of the data set -> the volume */
@@ -81,6 +83,13 @@ bool snow_hdf5_describe(hid_t id, hdf5_set *out);
 
 /* Opens the group `levels` above the data set; below 0: there is none. */
 hid_t snow_hdf5_above(const hdf5_file *file, const hdf5_set *set, int levels);
+
+/* Refuses data in other files and filters that are not installed; files of
+ * codes whose grids are not read.  Errors: SNOW_STATUS_BAD_INPUT. */
+snow_status snow_hdf5_check_storage(snow_context *context, hid_t set);
+snow_status snow_hdf5_refuse_strangers(snow_context *context,
+                                       const hdf5_file *file,
+                                       const char *asked);
 
 /* Opens the requested data set, or the only volume of the file.  The caller
  * closes the set's id.  Errors: SNOW_STATUS_BAD_INPUT, SNOW_STATUS_BAD_USAGE

@@ -108,7 +108,7 @@ printf '<VTKFile type="vtkOverlappingAMR"><vtkOverlappingAMR><Block level="0">
     <DataSet file="cells.vti"/></Block></vtkOverlappingAMR></VTKFile>' >run.vth
 sed 's/PointData/CellData/g; s/"0 3 0 3 0 3"/"0 4 0 4 0 4"/g' run_0000.vti >cells.vti
 lacks='^$'
-"${PYTHON:-/usr/bin/python3}" - <<'END' 2>/dev/null || lacks='[.](h5|nc|xmf)( |:|$)'
+"${PYTHON:-/usr/bin/python3}" - <<'END' 2>/dev/null || lacks='([.](h5|nc|xmf|athdf)|_plt_cnt_[0-9]+)( |:|$)'
 import h5py
 import netCDF4
 import numpy as np
@@ -132,6 +132,22 @@ with h5py.File("run.h5", "w") as run, open("run.xmf", "w") as text:
         with h5py.File(f"data_{step * 100}.h5", "w") as one:
             one[f"data/{step * 100}/fields/rho"] = a + step
     text.write("</Grid></Domain></Xdmf>")
+# Eight blocks of one level, as FLASH and Athena++ write them.
+places = np.array(list(np.ndindex(2, 2, 2)))
+ends = np.stack([places, places + 1], -1) / 2
+blocks = np.add.outer(places.sum(1), np.add.outer(np.add.outer(
+    np.arange(4.), np.arange(4.)), np.arange(4.)))
+with h5py.File("run_hdf5_plt_cnt_0000", "w") as run:
+    run["bounding box"], run["dens"] = ends, blocks
+    run["refine level"] = run["node type"] = np.ones(8, "i4")
+with h5py.File("blast.prim.00000.athdf", "w") as run:
+    run.attrs.update(RootGridSize=[8] * 3, MeshBlockSize=[4] * 3, NumVariables=[2],
+                     DatasetNames=np.array(["prim"], "S5"),
+                     VariableNames=np.array(["rho", "press"], "S5"))
+    run["prim"], run["Levels"] = np.stack([blocks, blocks]), np.zeros(8, "i4")
+    run["LogicalLocations"] = places
+    for i in range(3):
+        run[f"x{i + 1}f"] = np.linspace(*ends[:, i].T, 5).T
 with netCDF4.Dataset("ocean.nc", "w") as ocean:
     for name, at, unit in (("time", [0, 1, 2], "days since 2000-01-01"),
                            ("z", [0, 1, 3, 7, 15, 31, 63, 127], "m"),
