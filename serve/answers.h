@@ -9,10 +9,11 @@
 /* --- description.c ---
  *
  * For all pages, also those that come later: the volume, its views, the names
- * that a recipe may hold; the transfer function; figures of the last
- * picture. */
+ * that a recipe may hold; the transfer function, and for the state what would
+ * make it anew; figures of the last picture. */
 void answer_info(drawing *d, outbox *box);
 void answer_look(drawing *d, outbox *box);
+void answer_kept(drawing *d, viewer_state *s, uint32_t revision);
 void answer_figures(drawing *d, double hidden, outbox *box);
 
 /* The step that a simulation has drawn. */

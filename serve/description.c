@@ -225,6 +225,53 @@ static json_t *channels_of(const drawing *d) {
     return list;
 }
 
+/* The name of the map whose colours these are; or each at its value. */
+static json_t *colormap_of(const snow_look *look) {
+    snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
+    size_t same = 0, count;
+    for (size_t i = 0;
+         (count = snow_colormap_points(i, points, SNOW_COLORMAP_POINTS_MAX));
+         i++) {
+        for (same = 0; count == look->color_count && same < count &&
+                       memcmp(&points[same].red, &look->colors[same].red,
+                              3 * sizeof(double)) == 0;
+             same++)
+            continue;
+        if (count == look->color_count && same == count)
+            return json_string(snow_colormap_name(i));
+    }
+    return NULL;
+}
+
+/* What a recipe needs for the look to stay as it is (kept_look.h); NULL: keys
+ * cannot say it, as those of labels, of channels, and of projections, whose
+ * values are spread anew. */
+static json_t *look_keys(const drawing *d) {
+    const snow_transfer *transfer = d->state.transfer;
+    snow_look look = {.size = sizeof look};
+    double low, high;
+    if (!transfer || d->state.channels.list.count ||
+        mode_is_projection(d->opts.mode) || snow_transfer_label(transfer, 0) ||
+        snow_transfer_get_look(transfer, &look) != SNOW_STATUS_OK ||
+        look.opacity_count > POINTS_MOST)
+        return NULL;
+    snow_transfer_domain(transfer, &low, &high);
+    json_t *keys = json_pack(
+        "{s:[f,f], s:o, s:s}", "range", low, high, "opacity",
+        points_of(look.opacities, look.opacity_count), "shade",
+        d->state.settings.shade == SNOW_SHADE_PHONG ? "phong" : "none");
+    json_t *map = look.name ? NULL : colormap_of(&look);
+    if (look.name)
+        json_object_set_new(keys, "preset", json_string(look.name));
+    else if (map)
+        json_object_set_new(keys, "colormap", map);
+    return keys;
+}
+
+void answer_kept(drawing *d, viewer_state *s, uint32_t revision) {
+    state_note_look(s, revision, look_keys(d));
+}
+
 void answer_look(drawing *d, outbox *box) {
     const snow_transfer *transfer = d->state.transfer;
     snow_look look = {.size = sizeof look};

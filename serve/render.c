@@ -272,6 +272,8 @@ static void serve_state(renderer *r, int level, json_t *recipe,
         return;
     if (r->drawing->look_is_new && o.applied)
         answer_look(r->drawing, r->box);
+    if (o.applied)
+        answer_kept(r->drawing, r->state, revision);
     r->drawing->look_is_new = false;
     bool stopped = o.done == EXIT_INTERRUPTED;
     r->drawn = revision;
@@ -288,6 +290,7 @@ void renderer_begin(drawing *d, viewer_state *s, outbox *box) {
     d->volume_is_new = false;
     answer_info(d, box);
     answer_look(d, box);
+    answer_kept(d, s, state_revision(s));
 }
 
 viewer_work renderer_step(renderer *r, double *due) {

@@ -1,5 +1,6 @@
 /* state.c - implements state.h: a monitor. */
 #include "state.h"
+#include "kept_look.h"
 #include "message.h"
 #include "options/option_values.h"
 
@@ -18,6 +19,7 @@ struct viewer_state {
     pthread_cond_t changed;
     json_t *recipe;
     json_t *files; /* mask and overlay that the recipe began with */
+    kept_look look;
     atomic_uint revision;
     atomic_bool ended;
     bool moving;
@@ -51,6 +53,7 @@ viewer_state *state_new(json_t *recipe) {
     pthread_condattr_destroy(&monotonic);
     s->recipe = recipe;
     s->files = json_object();
+    s->look.written = json_object();
     for (size_t i = 0; message_switches(i); i++)
         json_object_set(s->files, message_switches(i),
                         json_object_get(recipe, message_switches(i)));
@@ -65,6 +68,7 @@ void state_free(viewer_state *s) {
         json_decref(s->questions[(s->first + i) % STATE_QUESTIONS_MOST].tree);
     json_decref(s->recipe);
     json_decref(s->files);
+    kept_look_free(&s->look);
     snow_context_free(s->checker);
     pthread_cond_destroy(&s->changed);
     pthread_mutex_destroy(&s->lock);
@@ -116,6 +120,7 @@ static char *fault_of(viewer_state *s, const json_t *recipe) {
 char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
     pthread_mutex_lock(&s->lock);
     json_t *recipe = json_deep_copy(s->recipe);
+    kept_look look = kept_look_copy(&s->look);
     const char *key;
     json_t *value;
     json_object_foreach((json_t *)changes, key, value) {
@@ -127,12 +132,17 @@ char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
         else
             json_object_set_new(recipe, key, json_deep_copy(value));
     }
+    look.changed = false;
+    kept_look_follow(&look, changes, recipe);
     char *fault = fault_of(s, recipe);
     if (fault) {
         json_decref(recipe);
+        kept_look_free(&look);
     } else {
         json_decref(s->recipe);
         s->recipe = recipe;
+        kept_look_free(&s->look);
+        s->look = look;
         s->changed_at = seconds();
         /* A step back, a link: crop and camera come together, and fit. */
         if (json_object_get(changes, "crop"))
@@ -144,6 +154,22 @@ char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
     *revision = s->revision;
     pthread_mutex_unlock(&s->lock);
     return fault;
+}
+
+bool state_wrote(viewer_state *s) {
+    pthread_mutex_lock(&s->lock);
+    bool wrote = s->look.changed;
+    pthread_mutex_unlock(&s->lock);
+    return wrote;
+}
+
+void state_note_look(viewer_state *s, uint32_t revision, json_t *computed) {
+    pthread_mutex_lock(&s->lock);
+    if (s->revision == revision)
+        kept_look_note(&s->look, s->recipe, computed);
+    else
+        json_decref(computed);
+    pthread_mutex_unlock(&s->lock);
 }
 
 bool state_crop_is_alone(viewer_state *s) {
@@ -183,15 +209,22 @@ outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except) {
         json_object_set_new(
             shown, key, is_switch(key) ? json_true() : json_deep_copy(value));
     uint32_t revision = s->revision;
+    json_t *computed = json_array();
+    json_object_foreach(s->look.written, key, value)
+        json_array_append_new(computed, json_string(key));
     pthread_mutex_unlock(&s->lock);
     char *text = json_dumps(shown, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    char *written = json_dumps(computed, JSON_COMPACT);
     json_decref(shown);
-    size_t most = (text ? strlen(text) : 0) + 64;
-    outgoing *made = text ? outgoing_new(most) : NULL;
+    json_decref(computed);
+    size_t most = (text ? strlen(text) : 0) + (written ? strlen(written) : 0) +
+                  80;
+    outgoing *made = text && written ? outgoing_new(most) : NULL;
     if (made) {
-        made->length =
-            (size_t)snprintf((char *)made->bytes, most,
-                             STATE_HEAD "%-10u,\"recipe\":%s}", 0U, text);
+        made->length = (size_t)snprintf(
+            (char *)made->bytes, most,
+            STATE_HEAD "%-10u,\"computed\":%s,\"recipe\":%s}", 0U, written,
+            text);
         made->is_text = true;
         made->topic = MESSAGE_STATE;
         made->client = client;
@@ -199,6 +232,7 @@ outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except) {
         made->revision = revision;
     }
     free(text);
+    free(written);
     return made;
 }
 

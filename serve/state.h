@@ -47,7 +47,12 @@ void state_free(viewer_state *s);
  * of the state. */
 char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision);
 
-/* The state as a message {"t": "state", "n": 0, "recipe": {...}} (message.h)
+/* Whether the last state_set wrote, or took out, keys of the look that no page
+ * had named (kept_look.h). */
+bool state_wrote(viewer_state *s);
+
+/* The state as a message {"t": "state", "n": 0, "computed": ["range"], "recipe":
+ * {...}} (message.h)
  * for a page, or for all (0) but one; NULL: no memory. */
 outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except);
 
@@ -66,6 +71,10 @@ void state_end(viewer_state *s);
 
 /* --- for the renderer ------------------------------------------------------
  */
+
+/* What the look of a revision is, as keys, which are taken over; NULL: it can
+ * be given by none. */
+void state_note_look(viewer_state *s, uint32_t revision, json_t *computed);
 
 /* The next work.  `drawn` is the revision of the last picture, and `level` its
  * quality; -1: none.  For a state *recipe gets a copy of the whole recipe.

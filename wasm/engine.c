@@ -96,10 +96,10 @@ static void set(const message *m) {
     uint32_t revision;
     char *fault = state_set(e.state, m->recipe, &revision);
     set_log_note(&e.sets, m->n, revision);
-    if (!fault)
-        return;
-    answer_said(e.box, CLIENT, fault);
-    outbox_put(e.box, state_message(e.state, 0, 0));
+    if (fault)
+        answer_said(e.box, CLIENT, fault);
+    if (fault || state_wrote(e.state))
+        outbox_put(e.box, state_message(e.state, 0, 0));
     free(fault);
 }
 

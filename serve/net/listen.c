@@ -172,7 +172,9 @@ static void set(listener *l, client *c, const message *m) {
         free(fault);
         return;
     }
-    if (l->count > 1)
+    if (state_wrote(l->state)) /* what this page has not said */
+        send_state(l, 0, 0);
+    else if (l->count > 1)
         send_state(l, 0, c->id);
 }
 
