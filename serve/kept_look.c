@@ -10,9 +10,9 @@ static const char *const parts[][PART_KEYS] = {
 #define PARTS (sizeof parts / sizeof *parts)
 
 /* Keys by which another look is chosen, or made of other values. */
-static const char *const others[] = {
-    "preset", "channel", "component", "mode", "scale", "time",
-    "crop",   "clip",    "mask",      "labels"};
+static const char *const others[] = {"preset", "channel", "component", "mode",
+                                     "scale",  "time",    "crop",      "clip",
+                                     "mask",   "labels"};
 
 kept_look kept_look_copy(const kept_look *k) {
     return (kept_look){json_incref(k->computed), json_incref(k->base),
@@ -81,11 +81,11 @@ static json_t *spread(const json_t *points, const json_t *from,
         const json_t *point = json_array_get(points, i);
         const double at = json_number_value(json_array_get(point, 0));
         const double share = (at - low) / wide;
-        const bool same = !(a < low) && !(low < a) && !(b < low + wide) &&
-                          !(low + wide < b);
-        json_array_append_new(
-            list, json_pack("[f,O]", same ? at : a + share * (b - a),
-                            json_array_get(point, 1)));
+        const bool same =
+            !(a < low) && !(low < a) && !(b < low + wide) && !(low + wide < b);
+        json_array_append_new(list, json_pack("[f,O]",
+                                              same ? at : a + share * (b - a),
+                                              json_array_get(point, 1)));
     }
     return list;
 }
@@ -99,28 +99,27 @@ static void write_key(kept_look *k, json_t *recipe, const char *key,
     k->changed = true;
 }
 
-/* The opacity stays where it is unless the range moves. */
-static json_t *opacity_of(const kept_look *k, const json_t *changes,
-                          const json_t *recipe) {
-    json_t *points = json_object_get(k->computed, "opacity");
-    if (!names(changes, 2))
+/* Points of a look, where a recipe has its range. */
+static json_t *opacity_of(const json_t *look, const json_t *recipe) {
+    json_t *points = json_object_get(look, "opacity");
+    if (!has(recipe, 2))
         return json_incref(points);
     return points && !found(recipe, "scale")
-               ? spread(points, json_object_get(k->computed, "range"),
-                        json_object_get(changes, "range"))
+               ? spread(points, json_object_get(look, "range"),
+                        json_object_get(recipe, "range"))
                : NULL;
 }
 
-static void write_part(kept_look *k, const json_t *changes, json_t *recipe,
+static void write_part(kept_look *k, const json_t *look, json_t *recipe,
                        size_t part) {
     for (size_t i = 0; i < PART_KEYS && parts[part][i]; i++)
         write_key(k, recipe, parts[part][i],
-                  part == 1 ? opacity_of(k, changes, recipe)
-                            : json_incref(json_object_get(k->computed,
-                                                          parts[part][i])));
+                  part == 1
+                      ? opacity_of(look, recipe)
+                      : json_incref(json_object_get(look, parts[part][i])));
 }
 
-/* What was written goes, and the look is the one before. */
+/* What was written goes, and the look is the one without changes. */
 static void drop_written(kept_look *k, json_t *recipe) {
     const char *key;
     json_t *value;
@@ -150,14 +149,16 @@ void kept_look_follow(kept_look *k, const json_t *changes, json_t *recipe) {
         replace(&k->computed, NULL);
         replace(&k->base, NULL);
     }
-    if (touched && k->computed && json_object_get(k->written, "opacity") &&
-        names(changes, 2))
-        write_part(k, changes, recipe, 1);
-    for (size_t i = 0; touched && k->computed && i < PARTS; i++)
-        if (!has(recipe, i) && !names(changes, i))
-            write_part(k, changes, recipe, i);
-    if (!is_touched(k, recipe))
+    if (!is_touched(k, recipe)) {
         drop_written(k, recipe);
-    else if (taken)
-        replace(&k->computed, NULL);
+        return;
+    }
+    if (k->computed && names(changes, 2) &&
+        json_object_get(k->written, "opacity"))
+        write_part(k, k->computed, recipe, 1);
+    for (size_t i = 0; (touched || taken) && i < PARTS; i++) {
+        const json_t *look = names(changes, i) ? k->base : k->computed;
+        if (look && !has(recipe, i))
+            write_part(k, look, recipe, i);
+    }
 }

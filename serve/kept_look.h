@@ -1,8 +1,9 @@
-/* kept_look.h - keeps a look that was computed where a page changes a part of it.
+/* kept_look.h - keeps a look that was computed where a page changes a part of
+ * it.
  *
  * An automatic look is chosen from the histogram as a whole: given the very
- * opacity that it had, the library would choose other colours, another range and
- * shading.  So the first change of one part writes the others, as they were
+ * opacity that it had, the library would choose other colours, another range
+ * and shading.  So the first change of one part writes the others, as they were
  * computed, into the recipe.  They are taken out again when no page sets a part
  * any more, as after an undo, or when another look is chosen. */
 #ifndef KEPT_LOOK_H

@@ -117,43 +117,103 @@ static char *fault_of(viewer_state *s, const json_t *recipe) {
     return beyond ? strdup(beyond) : NULL;
 }
 
-char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
-    pthread_mutex_lock(&s->lock);
-    json_t *recipe = json_deep_copy(s->recipe);
-    kept_look look = kept_look_copy(&s->look);
+/* A recipe with a change. */
+static void change(viewer_state *s, json_t *recipe, const char *key,
+                   json_t *value) {
+    json_t *file = json_object_get(s->files, key);
+    if (json_is_null(value) || (is_switch(key) && !file))
+        json_object_del(recipe, key);
+    else if (is_switch(key))
+        json_object_set(recipe, key, file);
+    else
+        json_object_set_new(recipe, key, json_deep_copy(value));
+}
+
+/* Takes what is wrong out of changes, one by one: those that take a key out
+ * come first, as they may make room for others.  Returns what is against the
+ * first. */
+static char *sift(viewer_state *s, json_t *changes) {
+    char *first = NULL;
+    json_t *recipe = json_deep_copy(s->recipe), *kept = json_object(), *value;
     const char *key;
-    json_t *value;
-    json_object_foreach((json_t *)changes, key, value) {
-        json_t *file = json_object_get(s->files, key);
-        if (json_is_null(value) || (is_switch(key) && !file))
-            json_object_del(recipe, key);
-        else if (is_switch(key))
-            json_object_set(recipe, key, file);
-        else
-            json_object_set_new(recipe, key, json_deep_copy(value));
-    }
-    look.changed = false;
-    kept_look_follow(&look, changes, recipe);
+    for (int taken = 1; taken >= 0; taken--)
+        json_object_foreach(changes, key, value) {
+            if (json_is_null(value) != taken)
+                continue;
+            json_t *tried = json_copy(recipe);
+            change(s, tried, key, value);
+            char *fault = fault_of(s, tried);
+            if (!fault) {
+                json_object_set(kept, key, value);
+                change(s, recipe, key, value);
+            }
+            json_decref(tried);
+            if (first)
+                free(fault);
+            else
+                first = fault;
+        }
+    json_object_clear(changes);
+    json_object_update(changes, kept);
+    json_decref(kept);
+    json_decref(recipe);
+    return first;
+}
+
+/* The recipe that comes of changes, with its look. */
+static json_t *changed_recipe(viewer_state *s, const json_t *changes,
+                              kept_look *look) {
+    const char *key;
+    json_t *value, *recipe = json_deep_copy(s->recipe);
+    *look = kept_look_copy(&s->look);
+    look->changed = false;
+    json_object_foreach((json_t *)changes, key, value)
+        change(s, recipe, key, value);
+    kept_look_follow(look, changes, recipe);
+    return recipe;
+}
+
+static void take(viewer_state *s, json_t *recipe, const kept_look *look,
+                 const json_t *changes) {
+    json_decref(s->recipe);
+    kept_look_free(&s->look);
+    s->recipe = recipe;
+    s->look = *look;
+    s->changed_at = seconds();
+    /* A step back, a link: crop and camera come together, and fit. */
+    if (json_object_get(changes, "crop"))
+        s->crop_is_alone = !json_object_get(changes, "zoom") &&
+                           !json_object_get(changes, "target");
+    s->revision++;
+    pthread_cond_signal(&s->changed);
+}
+
+char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
+    kept_look look;
+    char *left_out = NULL;
+    json_t *good = json_copy((json_t *)changes);
+    pthread_mutex_lock(&s->lock);
+    json_t *recipe = changed_recipe(s, good, &look);
     char *fault = fault_of(s, recipe);
     if (fault) {
-        json_decref(recipe);
+        left_out = sift(s, good);
         kept_look_free(&look);
-    } else {
-        json_decref(s->recipe);
-        s->recipe = recipe;
-        kept_look_free(&s->look);
-        s->look = look;
-        s->changed_at = seconds();
-        /* A step back, a link: crop and camera come together, and fit. */
-        if (json_object_get(changes, "crop"))
-            s->crop_is_alone = !json_object_get(changes, "zoom") &&
-                               !json_object_get(changes, "target");
-        s->revision++;
-        pthread_cond_signal(&s->changed);
+        json_decref(recipe);
+        recipe = changed_recipe(s, good, &look);
+        if (!left_out || !json_object_size(good)) {
+            kept_look_free(&look);
+            json_decref(recipe);
+            recipe = NULL;
+        }
     }
+    if (recipe)
+        take(s, recipe, &look, good);
     *revision = s->revision;
     pthread_mutex_unlock(&s->lock);
-    return fault;
+    json_decref(good);
+    if (left_out)
+        free(fault);
+    return left_out ? left_out : fault;
 }
 
 bool state_wrote(viewer_state *s) {
@@ -217,14 +277,14 @@ outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except) {
     char *written = json_dumps(computed, JSON_COMPACT);
     json_decref(shown);
     json_decref(computed);
-    size_t most = (text ? strlen(text) : 0) + (written ? strlen(written) : 0) +
-                  80;
+    size_t most =
+        (text ? strlen(text) : 0) + (written ? strlen(written) : 0) + 80;
     outgoing *made = text && written ? outgoing_new(most) : NULL;
     if (made) {
-        made->length = (size_t)snprintf(
-            (char *)made->bytes, most,
-            STATE_HEAD "%-10u,\"computed\":%s,\"recipe\":%s}", 0U, written,
-            text);
+        made->length =
+            (size_t)snprintf((char *)made->bytes, most,
+                             STATE_HEAD "%-10u,\"computed\":%s,\"recipe\":%s}",
+                             0U, written, text);
         made->is_text = true;
         made->topic = MESSAGE_STATE;
         made->client = client;

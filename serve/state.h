@@ -43,15 +43,16 @@ viewer_state *state_new(json_t *recipe);
 void state_free(viewer_state *s);
 
 /* Merges keys into the state; null takes one out.  Returns NULL, or what is
- * wrong, to be freed by the caller; then nothing has changed.  And the revision
- * of the state. */
+ * wrong, to be freed by the caller: such keys are left out, and the others
+ * taken.  And the revision of the state. */
 char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision);
 
 /* Whether the last state_set wrote, or took out, keys of the look that no page
  * had named (kept_look.h). */
 bool state_wrote(viewer_state *s);
 
-/* The state as a message {"t": "state", "n": 0, "computed": ["range"], "recipe":
+/* The state as a message {"t": "state", "n": 0, "computed": ["range"],
+ * "recipe":
  * {...}} (message.h)
  * for a page, or for all (0) but one; NULL: no memory. */
 outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except);

@@ -1,5 +1,8 @@
-// recipe.js - the state of the page, which is a recipe and nothing else, and
-// how it was before.
+// recipe.js - the state of the page, which is a recipe and nothing else, and how
+// it was before.
+//
+// A step holds the keys that it changed, as they were: undo sends these alone, and
+// takes back nothing that another page did.
 
 const HISTORY = 200;
 const TOGETHER = 600; // ms in which changes of the same keys are one step
@@ -7,19 +10,19 @@ const TOGETHER = 600; // ms in which changes of the same keys are one step
 /** What is of this page alone, and no part of the picture (slices.js). */
 const OWN = 'slices';
 
-const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
-const sorted = ({size, ...keys}) => Object.entries(keys).sort(([a], [b]) => a < b ? -1 : 1);
+const same = (a, b) => JSON.stringify(a ?? null) === JSON.stringify(b ?? null);
 
 export class Recipe {
     constructor(engine) {
         this.engine = engine;
         this.keys = {};
+        this.computed = []; // keys that the server has written, and no page (serve/kept_look.h)
         this.before = [];
         this.after = [];
         this.hearers = [];
         this.gesture = null; // begun, then changed
         this.last = {names: '', at: 0};
-        engine.on('state', message => this.take(message.recipe));
+        engine.on('state', message => this.take(message));
     }
 
     onChange(hear) {
@@ -32,8 +35,9 @@ export class Recipe {
     }
 
     /** What another page, or the server, has changed. */
-    take(keys) {
-        this.keys = OWN in this.keys ? {...keys, [OWN]: this.keys[OWN]} : keys;
+    take({recipe, computed = []}) {
+        this.keys = OWN in this.keys ? {...recipe, [OWN]: this.keys[OWN]} : recipe;
+        this.computed = computed;
         this.changed();
     }
 
@@ -53,27 +57,35 @@ export class Recipe {
         this.changed();
     }
 
+    /** What brings keys back to what they are now. */
+    now(names) {
+        return Object.fromEntries(names.map(name =>
+            [name, this.computed.includes(name) ? null : this.keys[name] ?? null]));
+    }
+
+    /** A step of these keys begins. */
     remember(names) {
-        const now = performance.now();
-        const together = names && names === this.last.names &&
-            now - this.last.at < TOGETHER;
-        this.last = {names, at: now};
-        if (together)
-            return;
-        this.before.push({...this.keys});
+        this.before.push(this.now(names));
         this.before.splice(0, this.before.length - HISTORY);
         this.after = [];
     }
 
+    /** Whether a change goes on with the step before. */
+    goesOn(names) {
+        const at = performance.now(), {last} = this;
+        this.last = {names, at};
+        return this.gesture ? this.gesture === 'changed' : names === last.names && at - last.at < TOGETHER;
+    }
+
     set(changes) {
-        const names = Object.keys(changes).filter(
-            key => !same(this.keys[key] ?? null, changes[key]));
+        const names = Object.keys(changes).filter(key => !same(this.keys[key], changes[key]));
         if (!names.length)
             return;
-        if (!this.gesture)
-            this.remember(names.join());
-        else if (this.gesture === 'begun')
-            this.remember('');
+        const step = this.before.at(-1);
+        if (this.goesOn(names.join()) && step)
+            Object.assign(step, {...this.now(names), ...step});
+        else
+            this.remember(names);
         this.gesture &&= 'changed';
         this.apply(changes);
     }
@@ -92,25 +104,26 @@ export class Recipe {
         this.changed();
     }
 
-    /** Becomes another recipe whole; the size is the window's. */
+    /** Becomes another recipe whole, in one step; the size is the window's. */
     replace(keys) {
-        const changes = {...keys};
+        const {size, ...changes} = {...keys};
         for (const key of Object.keys(this.keys))
-            if (!(key in keys))
+            if (!(key in keys) && key !== 'size')
                 changes[key] = null;
-        delete changes.size;
-        this.apply(changes);
+        this.last = {names: '', at: 0};
+        this.set(changes);
     }
 
-    /** To another state; steps that changed nothing are passed over. */
+    /** Takes a step back; those that changed nothing are passed over. */
     step(from, to) {
-        while (from.length && same(sorted(from.at(-1)), sorted(this.keys)))
+        while (from.length && Object.entries(from.at(-1)).every(([key, value]) => same(this.keys[key], value)))
             from.pop();
-        if (!from.length)
+        const step = from.pop();
+        if (!step)
             return false;
-        to.push({...this.keys});
+        to.push(this.now(Object.keys(step)));
         this.last = {names: '', at: 0};
-        this.replace(from.pop());
+        this.apply(step);
         return true;
     }
 

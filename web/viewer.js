@@ -10,6 +10,7 @@ import {Panel} from './panel.js';
 import {Pointer, TOOLS} from './pointer.js';
 import {Recipe} from './recipe.js';
 import {Slices} from './slices.js';
+import {leftOut, sifted} from './valid.js';
 
 const SIDE_MOST = 4096;
 const FEW = 8; // drafts whose figures nobody could read
@@ -89,7 +90,7 @@ const actions = {
         recipe.set({view: name, azimuth: 0, elevation: 0, roll: 0, position: null, up: null});
     },
     fit() {
-        recipe.remember('');
+        recipe.remember(['zoom', 'target', 'fit']);
         engine.ask('fit');
     },
     mode() {
@@ -140,7 +141,6 @@ const actions = {
             say('The picture is saved when it is final: wait a moment.');
     },
     reset() {
-        recipe.remember('');
         recipe.replace(page.begin);
     },
     undo: () => recipe.undo() || say('Nothing to undo'),
@@ -214,13 +214,24 @@ async function take([file]) {
             if (switched ? [true, lastOf(value)].includes(info[key]) : info.keys.includes(key))
                 taken[key] = switched || value;
         }
-        if (!Object.keys(taken).length)
+        const {good, wrong} = sifted(taken, info);
+        if (!Object.keys(good).length)
             throw 0;
-        recipe.remember('');
-        recipe.replace({slices: recipe.keys.slices, ...taken});
-        say(name === info.name ? '' : `The recipe is of ${name}, and taken.`);
+        recipe.replace({slices: recipe.keys.slices, ...good});
+        say(`${leftOut(wrong)} ${name === info.name ? '' : `The recipe is of ${name}, and taken.`}`.trim());
     } catch {
         say(`${file.name} is no recipe, as Recipe and --save-config write them.`);
+    }
+}
+
+/** The state of a link: of what it says, all that is understood. */
+function openLink(text) {
+    try {
+        const {size, ...keys} = JSON.parse(text), {good, wrong} = sifted(keys, page.info);
+        recipe.replace(good);
+        say(leftOut(wrong));
+    } catch {
+        say('The link is damaged: its recipe cannot be read.');
     }
 }
 
@@ -303,14 +314,8 @@ engine.on('state', () => {
         page.begin = {...recipe.keys};
     first = fresh = false;
     fitWindow(); // a server that was started again has another size
-    if (!begins)
-        return;
-    try {
-        if (given.has('recipe'))
-            recipe.replace(JSON.parse(given.get('recipe')));
-    } catch {
-        say('The link is damaged: its recipe cannot be read.');
-    }
+    if (begins && given.has('recipe'))
+        openLink(given.get('recipe'));
 });
 recipe.onChange(() => {
     panel.update();

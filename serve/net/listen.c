@@ -166,16 +166,13 @@ static void set(listener *l, client *c, const message *m) {
     uint32_t revision;
     char *fault = state_set(l->state, m->recipe, &revision);
     set_log_note(&c->sets, m->n, revision);
-    if (fault) {
+    if (fault)
         answer_said(l->box, c->id, fault);
-        send_state(l, c->id, 0);
-        free(fault);
-        return;
-    }
-    if (state_wrote(l->state)) /* what this page has not said */
+    if (fault || state_wrote(l->state)) /* what this page has not said */
         send_state(l, 0, 0);
     else if (l->count > 1)
         send_state(l, 0, c->id);
+    free(fault);
 }
 
 static int take(listener *l, client *c, message *m) {

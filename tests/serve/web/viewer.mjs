@@ -589,6 +589,15 @@ async function together(page) {
     await other.keyboard.press('3');
     await page.waitForFunction(() => window.snowglass.recipe.keys.view === 'left');
     check('another page sees a change', true);
+    await set(page, {colormap: 'hot'});
+    await other.waitForFunction(() => window.snowglass.recipe.keys.colormap === 'hot');
+    await press(other, 'ArrowLeft');
+    const {azimuth} = await keys(other);
+    await page.waitForFunction(at => window.snowglass.recipe.keys.azimuth === at, azimuth);
+    await press(page, 'z');
+    await page.waitForFunction(() => !window.snowglass.recipe.keys.colormap);
+    check('undo takes back what this page did, and no turn of the other',
+        (await keys(page)).azimuth === azimuth && (await keys(page)).view === 'left', JSON.stringify(await keys(page)));
     await other.context().close();
 }
 
@@ -1030,8 +1039,27 @@ async function recipes() {
     check('and what is no JSON', /cut\.json is no recipe/.test(await line('cut.json')));
     await choose(page, 'wrong.json', '{"roll": 7, "preset": "bone"}');
     check('a wrong value is named', /preset/.test(await line('preset')));
-    await page.waitForFunction(() => window.snowglass.recipe.keys.roll === 20); // nothing is changed
+    await page.waitForFunction(() => !window.snowglass.recipe.keys.preset); // and left out
+    check('and the others are taken', (await keys(page)).roll === 7);
     await page.context().close();
+    await links();
+}
+
+/** Of a link all is taken that is understood. */
+async function links() {
+    const link = recipe => `${part().url}&recipe=${encodeURIComponent(JSON.stringify(recipe))}`;
+    const page = await open({}, link({azimuth: 33, colour: 'red', slices: {at: 1}, target: 'x', mode: 'mop', zoom: 2,
+        toString: 1}));
+    await page.waitForFunction(() => !window.snowglass.recipe.keys.mode);
+    const now = await keys(page);
+    check('a link is taken but for what is wrong', now.azimuth === 33 && now.zoom === 2 && !now.slices &&
+        now.target !== 'x', JSON.stringify(now));
+    await page.context().close();
+    const other = await open({}, link({roll: 5, colour: 'red', slices: 5}));
+    check('which is named', /colour, slices/.test(await other.locator('.said').textContent()),
+        await other.locator('.said').textContent());
+    check('the rest stands', (await keys(other)).roll === 5);
+    await other.context().close();
 }
 
 /** A segmentation alone: its labels take colours, which command and link have. */

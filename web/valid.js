@@ -1,0 +1,44 @@
+// valid.js - which keys of a recipe this page takes: those of links and of files come
+// from anywhere, and the page counts with what they hold.
+
+const isNumber = value => Number.isFinite(value);
+const isText = value => typeof value === 'string';
+const isList = (length, each = isNumber) => value => Array.isArray(value) &&
+    (!length || value.length === length) && value.every(each);
+const isOne = (...tests) => value => tests.some(test => test(value));
+const isRange = value => isList(2)(value) && value[0] < value[1];
+const isWithin = (low, high) => value => isNumber(value) && value >= low && value <= high;
+const isNamed = names => value => isText(value) && names.includes(value);
+const arePoints = isList(0, isList(2));
+const isOn = value => value === true;
+
+/** What a value has to be; other keys are for the server to judge. */
+const shapes = ({times}) => ({
+    mode: isText, preset: isText, view: isText, colormap: isText, background: isText, title: isText, labels: isText,
+    azimuth: isNumber, elevation: isNumber, roll: isNumber, iso: isNumber, zoom: isWithin(1e-6, 1e6),
+    perspective: isWithin(0, 179), threshold: isWithin(0, 255), time: isWithin(0, times - 1),
+    'depth-darkening': isWithin(0, 1), occlusion: isWithin(0, 1),
+    position: isList(3), target: isList(3), up: isList(3), material: isList(4),
+    opacity: arePoints, 'gradient-opacity': arePoints, clip: isList(0, isList(4)),
+    crop: isList(3, isList(2, isWithin(0, 1e15))),
+    range: isOne(isRange, isList(2, value => /^p[\d.]+$/.test(value)), isNamed(['full'])),
+    window: isList(2), light: isOne(isNamed(['key', 'head']), isList(2)), shade: isNamed(['phong', 'none']),
+    legend: isOne(isOn, isText), box: isText, 'no-labels': isOn, mask: isOn, overlay: isOn,
+    'overlay-look': isText, channel: isOne(isText, isNumber), component: isOne(isText, isNumber),
+    slices: value => isRange(value?.range) && isList(3)(value.at)});
+
+/** The keys that are good, and the names of the others. */
+export function sifted(keys, info) {
+    const good = {}, wrong = [], tests = shapes(info);
+    for (const [key, value] of Object.entries(keys)) {
+        const known = info.keys?.includes(key) ?? Object.hasOwn(tests, key);
+        if ((known || (key === 'slices' && info.slices)) && (tests[key]?.(value) ?? true))
+            good[key] = value;
+        else if (value !== null)
+            wrong.push(key);
+    }
+    return {good, wrong};
+}
+
+/** Says what was left out. */
+export const leftOut = wrong => wrong.length ? `Left out, as it is not understood: ${wrong.join(', ')}.` : '';
