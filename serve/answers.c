@@ -6,6 +6,7 @@
 #include "draw/slices.h"
 #include "draw/small.h"
 #include "draw/values.h"
+#include "message.h"
 #include "pack.h"
 #include "recipe_file.h"
 #include "run/log.h"
@@ -54,9 +55,19 @@ static int answer_histogram(drawing *d, outbox *box, uint64_t client,
     return CONTINUE;
 }
 
-static void answer_command(drawing *d, viewer_state *s, outbox *box,
-                           uint64_t client, unsigned verb) {
+/* The state as a page shows it. */
+static json_t *recipe_for(viewer_state *s, const viewer_question *question) {
     json_t *recipe = state_recipe(s);
+    json_t *size = json_object_get(question->tree, "size");
+    if (message_has_size(size))
+        json_object_set(recipe, "size", size);
+    return recipe;
+}
+
+static void answer_command(drawing *d, viewer_state *s, outbox *box,
+                           const viewer_question *question, unsigned verb) {
+    const uint64_t client = question->client;
+    json_t *recipe = recipe_for(s, question);
     int done = drawing_apply(d, recipe);
     char *command = done == CONTINUE ? drawing_command(d, verb) : NULL;
     if (command)
@@ -219,15 +230,25 @@ void answer_none(outbox *box, uint64_t client, const json_t *tree) {
     put_value(box, client, at, NAN);
 }
 
-/* {"what": "depth", "x": 0.5, "y": 0.25}: of the picture as it was drawn last.
- * The page knows the camera. */
+/* The size of the page's picture, as far as that is known. */
+static void read_size(const json_t *tree, double size[2]) {
+    const json_t *list = json_object_get(tree, "size");
+    for (size_t i = 0; i < 2; i++) {
+        const double side = json_number_value(json_array_get(list, i));
+        size[i] = side >= 1 && side <= MESSAGE_SIDE ? side : size[i];
+    }
+}
+
+/* {"what": "depth", "x": 0.5, "y": 0.25, "size": [800, 600]}: of the state that
+ * was drawn last, in a picture of that size.  The page knows the camera. */
 static int answer_depth(drawing *d, outbox *box, uint64_t client,
                         const json_t *tree) {
-    double depth;
+    double depth, size[2] = {d->state.view.width, d->state.view.height};
+    read_size(tree, size);
     double x = json_number_value(json_object_get(tree, "x"));
     double y = json_number_value(json_object_get(tree, "y"));
     if (x < 0 || x > 1 || y < 0 || y > 1 ||
-        pick_depth(d, x, y, &depth) != CONTINUE)
+        pick_depth(d, x, y, size, &depth) != CONTINUE)
         return CONTINUE;
     answer_put(box, client, MESSAGE_PLAIN,
                json_pack("{s:s, s:f, s:f, s:o}", "t", "depth", "x", x, "y", y,
@@ -239,11 +260,11 @@ static int answer_depth(drawing *d, outbox *box, uint64_t client,
 static bool answer_state(drawing *d, viewer_state *s, outbox *box,
                          const viewer_question *question, const char *what) {
     if (strcmp(what, "command") == 0)
-        answer_command(d, s, box, question->client, VERB_RENDER);
+        answer_command(d, s, box, question, VERB_RENDER);
     else if (strcmp(what, "movie-command") == 0)
-        answer_command(d, s, box, question->client, VERB_TURNTABLE);
+        answer_command(d, s, box, question, VERB_TURNTABLE);
     else if (strcmp(what, "recipe") == 0) {
-        json_t *newest = state_recipe(s);
+        json_t *newest = recipe_for(s, question);
         json_t *tree =
             drawing_apply(d, newest) == CONTINUE ? recipe_file_tree(d) : NULL;
         answer_recipe_text(box, question->client, tree);

@@ -16,6 +16,9 @@
 #include <string.h>
 #include <time.h>
 
+/* Pictures of a simulation have one quality, and one size. */
+#define LEVEL_ONE 3
+
 /* Between two looks at the folder and at what pages want. */
 #define REST_SECONDS 0.05
 
@@ -312,7 +315,8 @@ void live_run(live *l, viewer_state *s, outbox *box) {
         json_t *recipe = NULL;
         uint32_t revision = saved;
         double due;
-        work = state_next(s, saved, 2, &due, &question, &recipe, &revision);
+        work = state_next(s, saved, LEVEL_ONE, &due, &question, &recipe,
+                          &revision);
         if (work == WORK_ANSWER)
             answer(l, s, box, &question);
         else if (work >= WORK_DRAFT)

@@ -106,7 +106,7 @@ static const char *read_hello(message *m) {
 }
 
 /* Pictures of more pixels would make the others wait. */
-static bool is_small(const json_t *size) {
+bool message_has_size(const json_t *size) {
     json_int_t width = json_integer_value(json_array_get(size, 0));
     json_int_t height = json_integer_value(json_array_get(size, 1));
     return json_array_size(size) == 2 && width >= 1 && height >= 1 &&
@@ -122,7 +122,7 @@ static const char *read_set(message *m) {
     json_object_foreach((json_t *)m->recipe, key, value) {
         if (!message_may_set(key))
             return "set: has a key that only the command line can set";
-        if (strcmp(key, "size") == 0 && !is_small(value))
+        if (strcmp(key, "size") == 0 && !message_has_size(value))
             return "set: a picture has 1 to 4096 pixels a side";
     }
     for (size_t i = 0; message_switches(i); i++) {
@@ -203,6 +203,13 @@ void frame_head_write(const frame_head *head, unsigned char out[32]) {
     put_u32(out + 20, head->height);
     put_u32(out + 24, head->render_us);
     put_u32(out + 28, head->pack_us);
+}
+
+uint64_t frame_shape(const unsigned char head[32]) {
+    uint64_t shape = 0;
+    for (int i = 0; i < 8; i++)
+        shape |= (uint64_t)head[16 + i] << (8 * i);
+    return shape;
 }
 
 void frame_head_set_n(unsigned char head[32], uint32_t n) {

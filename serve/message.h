@@ -47,6 +47,9 @@ void message_free(message *m);
 /* Whether a page may set a key of the recipe: no value names a file. */
 bool message_may_set(const char *key);
 
+/* Whether a size is that of a picture for a page. */
+bool message_has_size(const json_t *size);
+
 /* These keys; NULL: no more. */
 const char *message_key(size_t index);
 
@@ -74,6 +77,9 @@ typedef struct frame_head {
 } frame_head;
 
 void frame_head_write(const frame_head *head, unsigned char out[32]);
+
+/* The width and height of a picture, in one number. */
+uint64_t frame_shape(const unsigned char head[32]);
 
 /* Replaces n, which each page counts by itself. */
 void frame_head_set_n(unsigned char head[32], uint32_t n);

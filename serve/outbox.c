@@ -64,13 +64,15 @@ outgoing *outgoing_share(outbox *box, outgoing *p) {
     return p;
 }
 
-/* Under the lock: takes what a message replaces out of the list.  Two states
- * that each leave out another page become one for all, as neither has the
- * other's. */
+/* Under the lock: takes what a message replaces out of the list.  Pictures at
+ * rest of one state, for pages of different sizes, stand beside one another.
+ * Two states that each leave out another page become one for all, as neither
+ * has the other's. */
 static void replace(outbox *box, outgoing *by) {
     for (outgoing **at = &box->first; *at;) {
         outgoing *p = *at;
-        if (p->topic != by->topic || p->client != by->client) {
+        if (p->topic != by->topic || p->client != by->client ||
+            (p->shape != by->shape && p->revision == by->revision)) {
             at = &p->next;
             continue;
         }

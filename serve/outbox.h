@@ -29,6 +29,7 @@ typedef struct outgoing {
     message_topic topic;
     bool is_text;
     uint32_t revision; /* of the state, of pictures and states */
+    uint64_t shape;    /* width and height of a picture at rest; else 0 */
     uint64_t client;   /* for one page, or 0: for all but `except` */
     uint64_t except;
     struct outgoing *next;

@@ -217,6 +217,8 @@ static void put(packer *p, const picture *made, outgoing *packed,
     if (packed) {
         packed->revision = made->revision;
         packed->topic = about;
+        if (made->level == 2)
+            packed->shape = frame_shape(packed->bytes);
     }
     outbox_put(p->box, packed);
 }

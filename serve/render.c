@@ -264,10 +264,15 @@ static void note_recipe(renderer *r, const outcome *o, json_t *recipe) {
 static void serve_state(renderer *r, int level, json_t *recipe,
                         uint32_t revision) {
     const bool anew = r->drawn != revision || r->level < 0;
+    const bool beside = !anew && r->level == 2; /* another page's size */
     r->revision = revision;
-    outcome o = draw_state(r, level, recipe, anew);
+    outcome o = draw_state(r, level, recipe, anew || beside);
     note_recipe(r, &o, recipe);
+    if (level == 2 && o.done != EXIT_INTERRUPTED)
+        state_note_rest(r->state, recipe, revision);
     json_decref(recipe);
+    if (beside)
+        return;
     if (o.rescaled)
         return;
     if (r->drawing->look_is_new && o.applied)

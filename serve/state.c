@@ -22,6 +22,11 @@ struct viewer_state {
     kept_look look;
     atomic_uint revision;
     atomic_bool ended;
+    struct rest_size {
+        page_size of;
+        uint32_t rested; /* the revision of its picture at rest */
+    } sizes[STATE_SIZES_MOST];
+    int size_count;
     bool moving;
     bool crop_is_alone;
     int watchers;
@@ -296,6 +301,39 @@ outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except) {
     return made;
 }
 
+static void read_size(const json_t *recipe, int64_t size[2]) {
+    const json_t *list = json_object_get(recipe, "size");
+    for (size_t i = 0; i < 2; i++)
+        size[i] = json_integer_value(json_array_get(list, i));
+}
+
+void state_set_sizes(viewer_state *s, const page_size *sizes, int count) {
+    struct rest_size now[STATE_SIZES_MOST];
+    pthread_mutex_lock(&s->lock);
+    for (int i = 0; i < count; i++) {
+        now[i] = (struct rest_size){sizes[i], 0};
+        for (int k = 0; k < s->size_count; k++)
+            if (s->sizes[k].of.width == sizes[i].width &&
+                s->sizes[k].of.height == sizes[i].height)
+                now[i].rested = s->sizes[k].rested;
+    }
+    memcpy(s->sizes, now, (size_t)count * sizeof *now);
+    s->size_count = count;
+    pthread_cond_signal(&s->changed);
+    pthread_mutex_unlock(&s->lock);
+}
+
+void state_note_rest(viewer_state *s, const json_t *recipe, uint32_t revision) {
+    int64_t size[2];
+    read_size(recipe, size);
+    pthread_mutex_lock(&s->lock);
+    for (int i = 0; i < s->size_count; i++)
+        if (s->sizes[i].of.width == size[0] && s->sizes[i].of.height == size[1])
+            s->sizes[i].rested = revision;
+    pthread_cond_signal(&s->changed);
+    pthread_mutex_unlock(&s->lock);
+}
+
 void state_set_moving(viewer_state *s, bool moving) {
     pthread_mutex_lock(&s->lock);
     s->moving = moving;
@@ -356,6 +394,14 @@ void state_end(viewer_state *s) {
 }
 
 /* The next picture, and when it is due; WORK_NONE: none. */
+/* Another page's size that has no picture at rest yet; or NULL. */
+static const struct rest_size *next_size(const viewer_state *s) {
+    for (int i = 0; i < s->size_count; i++)
+        if (s->sizes[i].rested != s->revision)
+            return &s->sizes[i];
+    return NULL;
+}
+
 static viewer_work next_picture(const viewer_state *s, uint32_t drawn,
                                 int level, double *due) {
     *due = 0;
@@ -363,7 +409,7 @@ static viewer_work next_picture(const viewer_state *s, uint32_t drawn,
         return WORK_NONE;
     if (level < 0 || drawn != s->revision)
         return WORK_DRAFT;
-    if (level >= 2 || s->moving)
+    if (s->moving || level > 2 || (level == 2 && !next_size(s)))
         return WORK_NONE;
     *due = s->changed_at + (level ? STATE_HIGH_SECONDS : STATE_NORMAL_SECONDS);
     return level ? WORK_HIGH : WORK_NORMAL;
@@ -430,8 +476,14 @@ viewer_work state_next(viewer_state *s, uint32_t drawn, int level, double *due,
     if (work == WORK_ANSWER) {
         *question = take_question(s, place);
     } else if (work >= WORK_DRAFT) {
+        const struct rest_size *size =
+            level == 2 && drawn == s->revision ? next_size(s) : NULL;
         *recipe = json_deep_copy(s->recipe);
         *revision = s->revision;
+        if (size)
+            json_object_set_new(*recipe, "size",
+                                json_pack("[I,I]", (json_int_t)size->of.width,
+                                          (json_int_t)size->of.height));
     }
     pthread_mutex_unlock(&s->lock);
     return work;

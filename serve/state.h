@@ -57,6 +57,14 @@ bool state_wrote(viewer_state *s);
  * for a page, or for all (0) but one; NULL: no memory. */
 outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except);
 
+/* Sizes of pages, each once: of a state at rest each gets a picture. */
+#define STATE_SIZES_MOST 4
+typedef struct page_size {
+    int64_t width, height; /* 0: not said */
+} page_size;
+
+void state_set_sizes(viewer_state *s, const page_size *sizes, int count);
+
 /* Some page moves something: drafts suffice. */
 void state_set_moving(viewer_state *s, bool moving);
 
@@ -72,6 +80,10 @@ void state_end(viewer_state *s);
 
 /* --- for the renderer ------------------------------------------------------
  */
+
+/* The size of a recipe has its picture at rest of a revision, or cannot have
+ * one; 0: it is to be drawn again. */
+void state_note_rest(viewer_state *s, const json_t *recipe, uint32_t revision);
 
 /* What the look of a revision is, as keys, which are taken over; NULL: it can
  * be given by none. */

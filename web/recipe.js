@@ -16,6 +16,7 @@ export class Recipe {
     constructor(engine) {
         this.engine = engine;
         this.keys = {};
+        this.size = null; // of this page: each has its own
         this.computed = []; // keys that the server has written, and no page (serve/kept_look.h)
         this.before = [];
         this.after = [];
@@ -36,7 +37,8 @@ export class Recipe {
 
     /** What another page, or the server, has changed. */
     take({recipe, computed = []}) {
-        this.keys = OWN in this.keys ? {...recipe, [OWN]: this.keys[OWN]} : recipe;
+        this.keys = {...recipe, ...this.size && {size: this.size},
+            ...OWN in this.keys && {[OWN]: this.keys[OWN]}};
         this.computed = computed;
         this.changed();
     }
@@ -91,6 +93,7 @@ export class Recipe {
     }
 
     apply(changes) {
+        this.size = changes.size ?? this.size;
         this.keys = {...this.keys};
         for (const [key, value] of Object.entries(changes)) {
             if (value === null || value === undefined)

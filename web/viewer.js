@@ -151,14 +151,21 @@ const actions = {
 // --- the picture ------------------------------------------------------------------
 
 /** Pixels of the screen, as many as the server draws. */
-function fitWindow() {
+function fitWindow(anew) {
     const scale = devicePixelRatio || 1;
     if (!picture.clientWidth || page.info?.live) // a slice is shown alone; a movie has one size
         return;
     const size = [picture.clientWidth, picture.clientHeight].map(
         side => Math.max(16, Math.min(SIDE_MOST, Math.round(side * scale))));
-    if (`${recipe.keys.size}` !== `${size}`)
+    if (anew || `${recipe.keys.size}` !== `${size}`)
         recipe.apply({size});
+}
+
+/** The pixels of a draft: those of this page, unless it was made for the shape of another. */
+function enlarged({width, height}) {
+    const [across, down] = recipe.keys.size ?? [width, height];
+    return Math.abs(across * height - down * width) <= 2 * Math.max(across, down) ? [across, down]
+        : [width, height];
 }
 
 let trip = 0;
@@ -166,8 +173,7 @@ engine.on('measured', ms => {
     trip = ms;
 });
 engine.on('picture', frame => {
-    const [width, height] = frame.level ? [frame.width, frame.height]
-        : recipe.keys.size ?? [frame.width, frame.height];
+    const [width, height] = frame.level ? [frame.width, frame.height] : enlarged(frame);
     if (canvas.width !== width || canvas.height !== height)
         [canvas.width, canvas.height] = [width, height];
     if (frame.level === 2) { // it may have alpha: over black, as those before it
@@ -175,11 +181,13 @@ engine.on('picture', frame => {
         paint.fillRect(0, 0, width, height);
     }
     paint.drawImage(frame.bitmap, 0, 0, width, height);
-    page.rest = frame.level === 2 ? frame.blob : null;
+    const own = !recipe.size || `${recipe.size}` === `${[frame.width, frame.height]}`;
+    page.rest = frame.level === 2 && own ? frame.blob : null;
     page.frames = (page.frames ?? 0) + 1;
     if (canvas.dataset.level !== '0' || frame.level || page.frames % FEW === 0) {
         canvas.dataset.level = frame.level;
-        level.textContent = page.info?.live ? `step ${page.step}` : LEVELS[frame.level];
+        level.textContent = page.info?.live ? `step ${page.step}` : frame.level < 2 || own ? LEVELS[frame.level]
+            : 'as another page has it';
         figures.textContent = `${frame.width} x ${frame.height}, drawn in ${frame.render.toFixed(1)} ms, ` +
             `packed in ${frame.pack.toFixed(1)} ms, ${(frame.bytes / 1024).toFixed(0)} kB, ` +
             `round trip ${trip.toFixed(0)} ms`;
@@ -251,7 +259,7 @@ function ready() {
 
 const slices = new Slices(recipe, page, engine, views);
 const panel = new Panel(recipe, page, engine, actions, slices);
-const pointer = new Pointer(canvas, recipe, page, (x, y) => engine.ask('depth', {x, y}));
+const pointer = new Pointer(canvas, recipe, page, (x, y) => engine.ask('depth', {x, y, size: [canvas.width, canvas.height]}));
 const overlay = new Overlay(recipe, page, pointer, slices);
 picture.append(...overlay.elements);
 let first = true, fresh = true; // the first state of all, and of a connection
@@ -313,7 +321,7 @@ engine.on('state', () => {
     if (first)
         page.begin = {...recipe.keys};
     first = fresh = false;
-    fitWindow(); // a server that was started again has another size
+    fitWindow(true);
     if (begins && given.has('recipe'))
         openLink(given.get('recipe'));
 });

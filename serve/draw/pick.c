@@ -30,23 +30,24 @@ static double near(const snow_image *depths, int x, int y) {
     return best;
 }
 
-int pick_depth(drawing *d, double x, double y, double *depth) {
+int pick_depth(drawing *d, double x, double y, const double size[2],
+               double *depth) {
     render_state *s = &d->state;
     snow_settings settings = s->settings;
     snow_view view = s->view;
     snow_frame *frame = NULL;
     snow_image *image = NULL;
-    double scale = fmin(1, SIDE / fmax(view.width, view.height));
+    double scale = fmin(1, SIDE / fmax(size[0], size[1]));
     *depth = NAN;
-    ranks_tell(d, RANKS_DEPTH, json_pack("[f,f]", x, y));
+    ranks_tell(d, RANKS_DEPTH, json_pack("[f,f,f,f]", x, y, size[0], size[1]));
     if (settings.mode != SNOW_MODE_OVER &&
         (settings.mode != SNOW_MODE_ISO || process_ranks() > 1))
         return CONTINUE;
     settings.depth = true;
     settings.stop = NULL;
     settings.quality = SNOW_QUALITY_DRAFT;
-    view.width = (int)fmax(1, rint(scale * view.width));
-    view.height = (int)fmax(1, rint(scale * view.height));
+    view.width = (int)fmax(1, rint(scale * size[0]));
+    view.height = (int)fmax(1, rint(scale * size[1]));
     snow_status status =
         small_render(d, s->transfer, &view, &settings, &frame, &image);
     if (status == SNOW_STATUS_OK && image)

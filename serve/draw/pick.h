@@ -8,6 +8,7 @@
  * to where the object is, in the world; x and y are shares of the picture's
  * width and height. NaN where there is nothing, or the mode has no depth, as
  * iso by many ranks. Returns CONTINUE or an exit code. */
-int pick_depth(drawing *d, double x, double y, double *depth);
+int pick_depth(drawing *d, double x, double y, const double size[2],
+               double *depth);
 
 #endif

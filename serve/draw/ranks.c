@@ -88,7 +88,9 @@ static void make_call(drawing *d, ranks_call call, const json_t *given) {
                               (int)number(given, 1), NULL, NULL, &image);
         break;
     case RANKS_DEPTH:
-        (void)pick_depth(d, number(given, 0), number(given, 1), &depth);
+        ends[0] = number(given, 2);
+        ends[1] = number(given, 3);
+        (void)pick_depth(d, number(given, 0), number(given, 1), ends, &depth);
         break;
     case RANKS_ENDS:
         values_ends(d, ends);

@@ -15,7 +15,7 @@ typedef enum ranks_call {
     RANKS_FIT,       /* nothing */
     RANKS_RENDER,    /* [quality, shrink] */
     RANKS_THUMBNAIL, /* [preset, side] */
-    RANKS_DEPTH,     /* [x, y] */
+    RANKS_DEPTH,     /* [x, y, width, height] */
     RANKS_ENDS,      /* nothing */
     RANKS_WINDOW,    /* nothing */
     RANKS_HISTOGRAM  /* [low, high] */

@@ -51,12 +51,18 @@ static void forget_pictures(client *c, outbox *box) {
     c->count = left;
 }
 
+uint64_t client_shape(const client *c) {
+    return (uint64_t)c->size.width | (uint64_t)c->size.height << 32;
+}
+
 void client_queue(client *c, outbox *box, outgoing *p) {
     /* The picture at rest, whose head says so, is one for all links. */
     bool final = p->topic == MESSAGE_PICTURE && p->bytes[8] == 2;
     if (is_picture(p) && !final &&
         c->thin != (p->topic == MESSAGE_THIN_PICTURE))
         return;
+    if (final && c->served && p->shape && p->shape != client_shape(c))
+        return; /* that of its own size comes too */
     if (is_picture(p))
         forget_pictures(c, box);
     for (int i = 0; i < c->count && p->topic != MESSAGE_PLAIN; i++) {

@@ -8,6 +8,7 @@
 
 #include "message.h"
 #include "outbox.h"
+#include "state.h"
 
 #include <libwebsockets.h>
 
@@ -43,11 +44,13 @@ typedef struct client {
     double blocked; /* the share of them, of late */
     int under_way;  /* pictures that were sent and not acknowledged: */
     sent_picture sent_pictures[CLIENT_UNDER_WAY]; /* the oldest first */
-    double trip;  /* seconds from a picture to its acknowledgement, of late */
-    int step;     /* of quality, from that which all begin with */
-    int trips;    /* that were measured since it changed */
-    uint32_t n;   /* the newest that the page counted */
-    set_log sets; /* of its own */
+    double trip;    /* seconds from a picture to its acknowledgement, of late */
+    int step;       /* of quality, from that which all begin with */
+    int trips;      /* that were measured since it changed */
+    page_size size; /* of the page's picture; 0: not said */
+    bool served;    /* it gets pictures at rest of that size */
+    uint32_t n;     /* the newest that the page counted */
+    set_log sets;   /* of its own */
 } client;
 
 void client_free(client *c, outbox *box);
@@ -58,6 +61,9 @@ void client_queue(client *c, outbox *box, outgoing *p);
 /* A picture was painted.  Whether pictures are to be packed in another way
  * for this page from now on. */
 bool client_acknowledge(client *c);
+
+/* The shape of the pictures at rest of its size (message.h). */
+uint64_t client_shape(const client *c);
 
 /* The quality of pictures that move, from 50 to 90. */
 int client_quality(const client *c);

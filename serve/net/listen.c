@@ -5,6 +5,7 @@
 #include "message.h"
 #include "net/client.h"
 #include "net/pages.h"
+#include "net/sizes.h"
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -108,6 +109,7 @@ static void count_clients(listener *l, int change) {
     for (const client *c = l->clients; c; c = c->next)
         moving = moving || c->moving;
     count_links(l);
+    sizes_collect(l->clients, l->state);
     state_set_watchers(l->state, l->count);
     if (!moving && change < 0)
         state_set_moving(l->state, false);
@@ -163,9 +165,16 @@ static int greet(listener *l, client *c, const message *m) {
 }
 
 static void set(listener *l, client *c, const message *m) {
-    uint32_t revision;
-    char *fault = state_set(l->state, m->recipe, &revision);
+    uint32_t revision = state_revision(l->state);
+    json_t *changes = sizes_take(l->clients, c, l->state, m->recipe);
+    const bool other = json_object_size(changes) || !c->size.width;
+    char *fault = other ? state_set(l->state, changes, &revision) : NULL;
     set_log_note(&c->sets, m->n, revision);
+    json_decref(changes);
+    if (!other) {
+        sizes_serve(c, l->state, l->box);
+        return;
+    }
     if (fault)
         answer_said(l->box, c->id, fault);
     if (fault || state_wrote(l->state)) /* what this page has not said */
@@ -197,7 +206,7 @@ static int take(listener *l, client *c, message *m) {
             count_links(l);
         break;
     case MESSAGE_ASK:
-        if (!state_ask(l->state, c->id, json_deep_copy(m->tree))) {
+        if (!state_ask(l->state, c->id, sizes_ask(c, m->tree))) {
             answer_none(l->box, c->id, m->tree);
             answer_said(l->box, c->id, "ask: too many questions wait");
         }

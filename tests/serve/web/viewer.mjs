@@ -599,6 +599,27 @@ async function together(page) {
     check('undo takes back what this page did, and no turn of the other',
         (await keys(page)).azimuth === azimuth && (await keys(page)).view === 'left', JSON.stringify(await keys(page)));
     await other.context().close();
+    await sizes(page);
+}
+
+/** A page whose window is smaller turns, and each has its own picture in the end. */
+async function sizes(page) {
+    const small = await open({viewport: {width: 420, height: 500}});
+    await press(small, 'ArrowRight');
+    const shown = one => one.evaluate(() => {
+        const {recipe: {keys: of}} = window.snowglass, {width, height, dataset} = document.querySelector('.picture canvas');
+        return `${of.azimuth} ${of.size} ${width},${height} ${dataset.level}`;
+    });
+    const {azimuth} = await keys(small);
+    for (const one of [page, small]) {
+        await one.waitForFunction(at => window.snowglass.recipe.keys.azimuth === at && window.snowglass.page.rest, azimuth);
+        const {size} = await keys(one);
+        check('each window has a picture of its size', await shown(one) === `${azimuth} ${size} ${size} 2`, await shown(one));
+    }
+    check('which differ', String((await keys(page)).size) !== String((await keys(small)).size));
+    await shot(page, 'larger');
+    await shot(small, 'smaller');
+    await small.context().close();
 }
 
 async function touch() {
