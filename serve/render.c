@@ -26,6 +26,8 @@ struct renderer {
     json_t *good;      /* the last recipe that was drawn, or opened with */
     json_t *vain;      /* what had no room in an emptied drawing; NULL: none */
     bool reported_empty;
+    char replaced[IDENTITY_BYTES]; /* the file by which it was, as was said */
+    bool reopened;
     double radius; /* of the volume that was read last */
 };
 
@@ -121,6 +123,11 @@ static bool keep_scale(renderer *r) {
     r->drawing->volume_is_new = false;
     drawing_middle(r->drawing, middle, &radius);
     r->radius = radius;
+    if (r->reopened) {
+        answer_info(r->drawing, r->box);
+        r->reopened = false;
+        return false;
+    }
     if (!(fabs(radius - before) > 1e-9 * before))
         return false;
     answer_info(r->drawing, r->box);
@@ -218,7 +225,38 @@ static bool try_answer(renderer *r, const viewer_question *question) {
            SNOW_STATUS_NO_MEMORY;
 }
 
+/* Pages know the volume by what it was: a file that was replaced is another
+ * one, of which a crop, another time or a clip plane would show voxels. */
+static void look_at_file(renderer *r) {
+    char now[IDENTITY_BYTES];
+    if (r->drawing->live)
+        return;
+    identity_of(r->drawing->opts.operands[0], now);
+    if (strcmp(now, r->drawing->identity) == 0 || strcmp(now, r->replaced) == 0)
+        return;
+    memcpy(r->replaced, now, sizeof now);
+    answer_put(r->box, 0, MESSAGE_PLAIN,
+               json_pack("{s:s, s:b, s:b}", "t", "replaced", "gone", !*now,
+                         "again", *now && process_ranks() == 1));
+}
+
+static bool reopens(renderer *r, const json_t *question) {
+    const char *what = json_string_value(json_object_get(question, "what"));
+    if (strcmp(what, "reopen") != 0 || process_ranks() > 1)
+        return false;
+    make_room(r);
+    identity_of(r->drawing->opts.operands[0], r->drawing->identity);
+    memcpy(r->replaced, r->drawing->identity, sizeof r->replaced);
+    r->reopened = true;
+    r->level = -1;
+    return true;
+}
+
 static void serve_answer(renderer *r, const viewer_question *question) {
+    if (reopens(r, question->tree)) {
+        json_decref(question->tree);
+        return;
+    }
     const bool again = process_ranks() == 1;
     if (again)
         say_later();
@@ -268,6 +306,8 @@ static void serve_state(renderer *r, int level, json_t *recipe,
     r->revision = revision;
     outcome o = draw_state(r, level, recipe, anew || beside);
     note_recipe(r, &o, recipe);
+    if (level > 0)
+        look_at_file(r);
     if (level == 2 && o.done != EXIT_INTERRUPTED)
         state_note_rest(r->state, recipe, revision);
     json_decref(recipe);

@@ -29,6 +29,7 @@ struct viewer_state {
     int size_count;
     bool moving;
     bool crop_is_alone;
+    bool touched; /* a page has changed something */
     int watchers;
     double changed_at;
     viewer_question questions[STATE_QUESTIONS_MOST]; /* a ring */
@@ -193,6 +194,12 @@ static void take(viewer_state *s, json_t *recipe, const kept_look *look,
     pthread_cond_signal(&s->changed);
 }
 
+void state_touch(viewer_state *s) {
+    pthread_mutex_lock(&s->lock);
+    s->touched = true;
+    pthread_mutex_unlock(&s->lock);
+}
+
 char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision) {
     kept_look look;
     char *left_out = NULL;
@@ -274,6 +281,7 @@ outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except) {
         json_object_set_new(
             shown, key, is_switch(key) ? json_true() : json_deep_copy(value));
     uint32_t revision = s->revision;
+    const bool touched = s->touched;
     json_t *computed = json_array();
     json_object_foreach(s->look.written, key, value)
         json_array_append_new(computed, json_string(key));
@@ -283,13 +291,13 @@ outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except) {
     json_decref(shown);
     json_decref(computed);
     size_t most =
-        (text ? strlen(text) : 0) + (written ? strlen(written) : 0) + 80;
+        (text ? strlen(text) : 0) + (written ? strlen(written) : 0) + 96;
     outgoing *made = text && written ? outgoing_new(most) : NULL;
     if (made) {
-        made->length =
-            (size_t)snprintf((char *)made->bytes, most,
-                             STATE_HEAD "%-10u,\"computed\":%s,\"recipe\":%s}",
-                             0U, written, text);
+        made->length = (size_t)snprintf(
+            (char *)made->bytes, most,
+            STATE_HEAD "%-10u,\"touched\":%s,\"computed\":%s,\"recipe\":%s}",
+            0U, touched ? "true" : "false", written, text);
         made->is_text = true;
         made->topic = MESSAGE_STATE;
         made->client = client;

@@ -47,12 +47,15 @@ void state_free(viewer_state *s);
  * taken.  And the revision of the state. */
 char *state_set(viewer_state *s, const json_t *changes, uint32_t *revision);
 
+/* A page has changed more than the size of its window. */
+void state_touch(viewer_state *s);
+
 /* Whether the last state_set wrote, or took out, keys of the look that no page
  * had named (kept_look.h). */
 bool state_wrote(viewer_state *s);
 
-/* The state as a message {"t": "state", "n": 0, "computed": ["range"],
- * "recipe":
+/* The state as a message {"t": "state", "n": 0, "touched": false, "computed":
+ * ["range"], "recipe":
  * {...}} (message.h)
  * for a page, or for all (0) but one; NULL: no memory. */
 outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except);

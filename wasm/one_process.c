@@ -3,6 +3,7 @@
  * here, and the compiler leaves out what would. */
 #include "combine/exchange.h"
 #include "comm/comm.h"
+#include "draw/identity.h"
 #include "movie/movie_files.h"
 #include "parallel/internal.h"
 #include "render/picture.h"
@@ -52,4 +53,14 @@ NEVER(int, steps_find(const options *opts, step_files *out))
 
 void steps_free(step_files *files) {
     (void)files;
+}
+
+/* Files of the page are what they were when they were chosen. */
+void identity_of(const char *path, char out[IDENTITY_BYTES]) {
+    (void)path;
+    *out = 0;
+}
+
+const char *identity_of_program(void) {
+    return "";
 }

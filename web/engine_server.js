@@ -23,6 +23,7 @@ export class ServerEngine {
         this.painting = Promise.resolve();
         this.wait = 500;
         this.flushed = 0;
+        this.lost = {}; // what a server that went away has not heard
     }
 
     on(name, hear) {
@@ -42,7 +43,10 @@ export class ServerEngine {
         this.socket.onopen = () => {
             this.wait = 500;
             this.sentAt.clear();
+            this.lost = Object.assign({}, ...this.unheard.values(), this.waiting);
+            delete this.lost.size;
             this.unheard.clear();
+            this.waiting = null;
             this.say({t: 'hello', token: this.token, wants: ['jpeg', 'png', 'webp']});
             this.tell('open');
         };

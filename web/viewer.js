@@ -57,7 +57,16 @@ page.say = say;
 function open(name, ...children) {
     dialog.replaceChildren(make('h2', {textContent: name}), ...children,
         make('p', {}, button('Close', 'Close', () => dialog.close())));
-    dialog.showModal();
+    if (!dialog.open)
+        dialog.showModal();
+}
+
+/** Asks whether something is to be done. */
+function question(name, text, [answer, act]) {
+    open(name, make('p', {textContent: text}), make('p', {}, button(answer, answer, () => {
+        dialog.close();
+        act();
+    })));
 }
 
 /** Shows a text, and copies it where the browser allows that. */
@@ -257,6 +266,28 @@ function ready() {
     describe();
 }
 
+/** What this page showed when its viewer went away; whether it is another viewer, or file. */
+let lost = null, returns = null;
+
+/** Another viewer has none of the state: it gets that of this page if nobody has changed
+ * its own and the file is the same, else when the user says so.  The same one gets what
+ * it has not heard. */
+function returned(touched) {
+    const {other, same} = returns ?? {};
+    if (!other) {
+        if (Object.keys(lost.unheard).length)
+            recipe.apply(lost.unheard);
+        return;
+    }
+    const {good} = sifted(lost.keys, page.info);
+    if (same && !touched)
+        recipe.replace(good);
+    else if (JSON.stringify(good) !== JSON.stringify(sifted(recipe.keys, page.info).good))
+        question('The viewer was started again', `It shows ${page.info.name}${same ? ', changed by another page'
+            : ', which is another file'}. This page had a state of its own.`,
+        ['Take the state of this page', () => recipe.replace(good)]);
+}
+
 const slices = new Slices(recipe, page, engine, views);
 const panel = new Panel(recipe, page, engine, actions, slices);
 const pointer = new Pointer(canvas, recipe, page, (x, y) => engine.ask('depth', {x, y, size: [canvas.width, canvas.height]}));
@@ -266,6 +297,9 @@ let first = true, fresh = true; // the first state of all, and of a connection
 
 engine.on('closed', reason => say(reason, true));
 engine.on('open', () => {
+    const own = Object.entries(recipe.keys).filter(([key]) => !recipe.computed.includes(key) && key !== 'size');
+    lost = {keys: Object.fromEntries(own), unheard: engine.lost};
+    returns = null;
     fresh = true;
     say('');
 });
@@ -298,10 +332,22 @@ engine.on('look', message => {
     panel.update();
     ready();
 });
+engine.on('replaced', ({gone, again}) => {
+    const {name} = page.info;
+    if (again)
+        question(`${name} is another file now`, `${name} was replaced since it was opened. What is shown is the ` +
+            'one before; a crop, another time or a clip plane would show voxels of the new one.',
+        ['Open the new one', () => engine.ask('reopen')]);
+    else
+        say(gone ? `${name} was removed: what is shown is as it was.` : `${name} was replaced: start the viewer again.`);
+});
 engine.on('info', info => {
-    const known = page.info;
+    const known = page.info?.file === info.file ? page.info : null;
+    if (page.info)
+        returns ??= {other: page.info.instance !== info.instance, same: known !== null && page.info.name === info.name};
     page.info = info;
-    page.whole ??= info.dims;
+    if (!known)
+        page.whole = info.dims;
     document.title = `${info.name} - snowglass`;
     title.textContent = `${info.name}  ${info.dims.join(' x ')}${info.live ? '' : ` ${info.type}`}, ` +
         `${info.spacing.map(x => +x.toPrecision(4)).join(' x ')} ` +
@@ -314,7 +360,7 @@ engine.on('info', info => {
     engine.ask('histogram');
     ready();
 });
-engine.on('state', () => {
+engine.on('state', ({touched}) => {
     const begins = first;
     if (!fresh)
         return;
@@ -322,6 +368,8 @@ engine.on('state', () => {
         page.begin = {...recipe.keys};
     first = fresh = false;
     fitWindow(true);
+    if (!begins)
+        returned(touched);
     if (begins && given.has('recipe'))
         openLink(given.get('recipe'));
 });

@@ -314,6 +314,7 @@ int drawing_apply(drawing *d, const json_t *recipe) {
 int drawing_open(const options *first, json_t *recipe, drawing *out) {
     *out = (drawing){.first = *first,
                      .slice_layers = {.keeps = true, .alone = true}};
+    identity_of(first->operands[0], out->identity);
     int done = make_options(out, recipe, &out->opts);
     if (done == CONTINUE)
         done = render_state_new(&out->opts, &out->state);

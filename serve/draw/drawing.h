@@ -7,6 +7,7 @@
 #ifndef DRAWING_H
 #define DRAWING_H
 
+#include "draw/identity.h"
 #include "picture/render_state.h"
 
 #include <jansson.h>
@@ -36,11 +37,12 @@ struct drawing {
     options opts;  /* of the present recipe */
     json_t *tree;
     render_state state;
-    char *data_key, *look_key; /* what volume and look were made of */
-    char *color_key;           /* and the look's colours, while points move */
-    char *spread_key;          /* all but its range, while that moves */
-    bool look_is_quick;        /* its colours are those of the look before */
-    shown_channels shown;      /* the numbers of what is drawn (mixed.h) */
+    char identity[IDENTITY_BYTES]; /* of the file that was opened */
+    char *data_key, *look_key;     /* what volume and look were made of */
+    char *color_key;      /* and the look's colours, while points move */
+    char *spread_key;     /* all but its range, while that moves */
+    bool look_is_quick;   /* its colours are those of the look before */
+    shown_channels shown; /* the numbers of what is drawn (mixed.h) */
     kept_channel away[SNOW_CHANNELS_MAX]; /* what was switched off */
     snow_volume *base[SNOW_CHANNELS_MAX]; /* each without clip planes, while
                                              these move; or NULL */

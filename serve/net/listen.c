@@ -171,6 +171,9 @@ static void set(listener *l, client *c, const message *m) {
     char *fault = other ? state_set(l->state, changes, &revision) : NULL;
     set_log_note(&c->sets, m->n, revision);
     json_decref(changes);
+    if (json_object_size(m->recipe) >
+        (json_object_get(m->recipe, "size") ? 1u : 0u))
+        state_touch(l->state);
     if (!other) {
         sizes_serve(c, l->state, l->box);
         return;

@@ -523,6 +523,38 @@ def windows():
     server.stop()
 
 
+def replaced():
+    """A file that is another one now is told of, and opened when a page says so."""
+    name, out = (os.path.join(FOLDER.name, each) for each in ("moved.nrrd", "moved.png"))
+
+    def write(side):
+        run_tool = [TOOL, "convert", "phantom:shells", "--dims", f"{side}x32x32",
+                    "-o", f"{name}.new.nrrd", "-y", "-q"]
+        subprocess.run(run_tool, check=True)
+        os.replace(f"{name}.new.nrrd", name)
+
+    write(32)
+    with viewer(name, "-q") as page:
+        info = page.receive_text("info")
+        page.rest(1, size=[64, 64])
+        write(40)
+        page.set(2, azimuth=10)
+        told = page.receive_text("replaced")
+        check("a file that was replaced is told of", told["again"] and not told["gone"], told)
+        page.question("reopen")
+        again = page.receive_text("info")
+        check("and opened", again["dims"] == [40, 32, 32] and again["file"] != info["file"]
+              and again["instance"] == info["instance"], again)
+        for _ in range(4):
+            page.say({"t": "ack", "n": 0})  # what came beside these texts
+        shown, command = page.rest(3, azimuth=20), page.ask("command")["text"]
+        check("it is what is shown", shown == run_command(command, out=out))
+        os.remove(name)
+        page.set(4, azimuth=30)
+        told = page.receive_text("replaced")
+        check("one that is gone cannot be opened", told["gone"] and not told["again"], told)
+
+
 def recipe_file():
     """A recipe has what only the command line sets, so it makes the picture."""
     points = os.path.join(FOLDER.name, "points.json")
@@ -1035,6 +1067,7 @@ if not THREADS:
     mask_switch()
 dragged_points([], grey=True)
 windows()
+replaced()
 if not SHORT:
     dragged_points(["--preset", "ct-bone"], grey=False)
     recipe_file()

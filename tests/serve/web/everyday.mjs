@@ -265,21 +265,39 @@ async function end(server) {
 
 /** A viewer that ends is missed in words, and found again; one with another secret
  * is reached by its URL, in the same tab. */
-export async function restarted({check, open, part, rest, folder}) {
+export async function restarted({check, keys, open, part, rest, folder}) {
     const {url: tool, said} = part();
     const file = `${folder}/token_${process.pid}`;
     let [server, url] = await start(tool, '--token-file', file);
     const {port} = new URL(url), page = await open({}, url);
     const hears = words => page.waitForFunction(text => document.querySelector('.said').textContent
         .includes(text), words);
+    await page.evaluate(() => window.snowglass.recipe.set({azimuth: 42, colormap: 'hot', title: 'mine'}));
+    await rest(page);
     await end(server);
     await hears('start snowglass serve again');
     check('the page says that the viewer does not answer', true);
+    await page.evaluate(() => window.snowglass.recipe.set({elevation: 7}));
     await page.evaluate(() => { window.snowglass.page.rest = null; });
     [server] = await start(tool, '--token-file', file, '--listen', `:${port}`);
     await rest(page);
     check('a page comes back with the viewer',
         await page.locator('.said').textContent() === '');
+    await page.waitForFunction(() => window.snowglass.recipe.keys.title === 'mine');
+    const other = await open({}, url); // sees what the viewer has
+    const now = await keys(other);
+    check('and so does what was done', now.azimuth === 42 && now.colormap === 'hot' && now.elevation === 7,
+        JSON.stringify(now));
+    await other.evaluate(() => window.snowglass.recipe.set({azimuth: 11}));
+    await page.waitForFunction(() => window.snowglass.recipe.keys.azimuth === 11);
+    await other.evaluate(() => window.snowglass.recipe.undo());
+    await other.context().close();
+    await end(server);
+    await hears('start snowglass serve again');
+    [server] = await start(tool, '--token-file', file, '--listen', `:${port}`, '--azimuth', '5');
+    await page.waitForFunction(() => window.snowglass.recipe.keys.azimuth === 42);
+    await rest(page);
+    check('all of it comes again', (await keys(page)).title === 'mine');
     await end(server);
     await hears('start snowglass serve again');
     [server, url] = await start(tool, '--listen', `:${port}`);
