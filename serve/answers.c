@@ -43,9 +43,11 @@ static int answer_histogram(drawing *d, outbox *box, uint64_t client,
         values_ends(d, ends);
     double low = json_is_number(lo) ? json_number_value(lo) : ends[0];
     double high = json_is_number(hi) ? json_number_value(hi) : ends[1];
-    if (!(low < high) || !isfinite(high - low) ||
-        values_count(d, low, high, counts) != CONTINUE)
+    if (!(low < high) || !isfinite(high - low))
         return CONTINUE;
+    int done = values_count(d, low, high, counts);
+    if (done != CONTINUE)
+        return done == VALUES_MORE ? done : CONTINUE;
     json_t *list = json_array();
     for (int i = 0; i < VALUES_BINS; i++)
         json_array_append_new(list, json_integer((json_int_t)counts[i]));
@@ -304,8 +306,12 @@ typedef struct answer_row {
 static int answer_by(const answer_row *row, drawing *d, viewer_state *s,
                      outbox *box, const viewer_question *question) {
     int made = row->newest ? follow(d, s) : CONTINUE;
-    if (made == CONTINUE && d->state.volume && d->state.transfer)
-        return row->answer(d, box, question->client, question->tree);
+    if (made == CONTINUE && d->state.volume && d->state.transfer) {
+        int done = row->answer(d, box, question->client, question->tree);
+        if (done == VALUES_MORE)
+            state_ask(s, question->client, json_incref(question->tree));
+        return done;
+    }
     if (made == SNOW_STATUS_NO_MEMORY)
         return made;
     answer_none(box, question->client, question->tree);

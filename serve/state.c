@@ -362,6 +362,7 @@ void state_set_watchers(viewer_state *s, int count) {
 bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
     const char *what = json_string_value(json_object_get(tree, "what"));
     bool waits = what && strcmp(what, "thumbnail") == 0;
+    bool slow = what && strcmp(what, "histogram") == 0;
     pthread_mutex_lock(&s->lock);
     const json_t *pane = json_object_get(tree, "pane");
     viewer_question *same = NULL; /* a thumbnail of the same pane */
@@ -385,8 +386,8 @@ bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
             same->tree = tree;
     } else if (capacity)
         s->questions[(s->first + s->count++) % STATE_QUESTIONS_MOST] =
-            (viewer_question){client, tree, waits};
-    s->urgent += capacity && !waits;
+            (viewer_question){client, tree, waits, slow};
+    s->urgent += capacity && !waits && !slow;
     pthread_cond_signal(&s->changed);
     pthread_mutex_unlock(&s->lock);
     if (!capacity)
@@ -441,13 +442,14 @@ static viewer_question take_question(viewer_state *s, int place) {
             s->questions[(s->first + place - 1) % STATE_QUESTIONS_MOST];
     s->first = (s->first + 1) % STATE_QUESTIONS_MOST;
     s->count--;
-    s->urgent -= !taken.waits;
+    s->urgent -= !taken.waits && !taken.slow;
     return taken;
 }
 
 /* Under the lock: what can be done now; WORK_NONE: nothing before *due or,
  * where that is 0, before something changes.  Answers and drafts take turns, so
- * that neither waits for all of the other. */
+ * that neither waits for all of the other; so do slow answers and all pictures.
+ */
 static viewer_work choose(viewer_state *s, uint32_t drawn, int level,
                           int *place, double *due) {
     viewer_work picture = next_picture(s, drawn, level, due);
@@ -455,7 +457,11 @@ static viewer_work choose(viewer_state *s, uint32_t drawn, int level,
     *place = next_question(s, picture == WORK_NONE && !s->moving);
     if (s->ended)
         return WORK_END;
-    if (*place >= 0 && !(ready && picture == WORK_DRAFT && s->answered))
+    const bool slow =
+        *place >= 0 &&
+        s->questions[(s->first + *place) % STATE_QUESTIONS_MOST].slow;
+    const bool turn = ready && s->answered && (slow || picture == WORK_DRAFT);
+    if (*place >= 0 && !turn)
         return WORK_ANSWER;
     return ready ? picture : WORK_NONE;
 }

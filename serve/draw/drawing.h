@@ -22,6 +22,16 @@ typedef struct kept_channel {
     int64_t index;
 } kept_channel;
 
+/* The values of the volume, which are counted once (values.h). */
+#define VALUES_BINS 256
+typedef struct kept_values {
+    bool measured;  /* the ends are known */
+    double ends[2]; /* of all of them */
+    double low, high;
+    int64_t done; /* voxels that are counted from low to high; 0: none */
+    uint64_t counts[VALUES_BINS];
+} kept_values;
+
 typedef struct shown_channels {
     int64_t index[SNOW_CHANNELS_MAX];
     int count;
@@ -49,6 +59,7 @@ struct drawing {
     char *base_key;                       /* what they were made of */
     char *plain_key; /* the same of the volume that is shown, where it has no
                         clip planes */
+    kept_values values;
     bool volume_is_new, look_is_new; /* since the caller last looked */
     bool live; /* a simulation draws it: nothing but grid and look is known */
     snow_transfer *slice_look;            /* of the last slice (slices.h) */

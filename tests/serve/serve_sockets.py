@@ -523,6 +523,36 @@ def windows():
     server.stop()
 
 
+def histograms():
+    """Voxels are counted between pictures, and once for all pages."""
+    name, side = os.path.join(FOLDER.name, "counted.nrrd"), 200
+    subprocess.run([TOOL, "convert", "phantom:head", "--dims", f"{side}x{side}x{side}",
+                    "-o", name, "-y", "-q"], check=True)
+    with open(name, "rb") as file:
+        voxels = file.read().split(b"\n\n", 1)[1]
+    server = Server(name)
+    page = Page(server)
+    page.rest(1, size=[64, 64])
+    page.question("histogram", lo=0, hi=256)
+    page.set(2, azimuth=10)
+    order = []
+    while "histogram" not in order:
+        what, message = page.hear()
+        order.append(message["t"] if what == "text" else what)
+        if what == "picture":
+            page.say({"t": "ack", "n": 0})
+    check("pictures come between the voxels that are counted",
+          "picture" in order, order)
+    counts = message["counts"]
+    check("each is counted in its bin", counts == [voxels.count(i) for i in range(256)])
+    before = server.processor_seconds()
+    again = Page(server).ask("histogram", lo=0, hi=256)
+    took = server.processor_seconds() - before
+    check("another page has the same at once", again["counts"] == counts and took < (
+        0.5 if SANITIZED else 0.04), took)
+    server.stop()
+
+
 def replaced():
     """A file that is another one now is told of, and opened when a page says so."""
     name, out = (os.path.join(FOLDER.name, each) for each in ("moved.nrrd", "moved.png"))
@@ -1068,6 +1098,7 @@ if not THREADS:
 dragged_points([], grey=True)
 windows()
 replaced()
+histograms()
 if not SHORT:
     dragged_points(["--preset", "ct-bone"], grey=False)
     recipe_file()
