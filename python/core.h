@@ -157,6 +157,7 @@ bool volume_is_open(const volume_object *o);
 bool volume_use(volume_object *o, PyObject *progress);
 
 PyObject *look_colormap_color(PyObject *module, PyObject *name);
+PyObject *volume_ground(PyObject *self, PyObject *args);
 PyObject *volume_look(PyObject *self, PyObject *args);
 PyObject *volume_render(PyObject *self, PyObject *args);
 PyObject *volume_views(PyObject *self, PyObject *nothing);

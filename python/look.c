@@ -167,6 +167,32 @@ PyObject *volume_look(PyObject *self, PyObject *args) {
     return NULL;
 }
 
+/* ground(green, blue, three pairs of levels): the share of the levels from
+ * which on the ground of colours, whose red this is, is white; else 0 */
+PyObject *volume_ground(PyObject *self, PyObject *args) {
+    PyObject *parts[3] = {self}, *pairs;
+    const snow_volume *volumes[3];
+    double white = 0, *levels = NULL;
+    size_t count = 0;
+    snow_status status;
+    if (!PyArg_ParseTuple(args, "O!O!O", volume_type, &parts[1], volume_type,
+                          &parts[2], &pairs))
+        return NULL;
+    levels = read_points(pairs, "a pair of levels", 2, &count);
+    volume_object *o = (volume_object *)self;
+    if (!PyErr_Occurred() && count == 3 && volume_use(o, Py_None)) {
+        for (int c = 0; c < 3; c++)
+            volumes[c] = ((volume_object *)parts[c])->volume;
+        const int64_t middle = snow_volume_get_info(o->volume)->dims[2] / 2;
+        CALL(o->context, status,
+             light_find_ground(volumes, (const double(*)[2])(void *)levels,
+                               middle, &white));
+        context_leave(o->context, status);
+    }
+    free(levels);
+    return PyErr_Occurred() ? NULL : PyFloat_FromDouble(white);
+}
+
 /* faded(volume, factor, opacities or None): the same colours with those
  * opacities, or its own, times a factor */
 static PyObject *transfer_faded(PyObject *self, PyObject *args) {

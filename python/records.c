@@ -282,11 +282,17 @@ static const field option_fields[] = {
 
 #define LOOK(name, kind) FIELD(snow_look, name, kind)
 static const field look_fields[] = {
-    LOOK(name, 's'),     LOOK(preset, 's'),
-    LOOK(colormap, 's'), LOOK(low, 'd'),
-    LOOK(high, 'd'),     LOOK(log, 'b'),
-    LOOK(per_mm, 'b'),   LOOK(symlog, 'd'),
-    LOOK(overlay, 'b'),  ENUM(snow_look, domain, domain_at, NULL),
+    LOOK(name, 's'),
+    LOOK(preset, 's'),
+    LOOK(colormap, 's'),
+    LOOK(low, 'd'),
+    LOOK(high, 'd'),
+    LOOK(log, 'b'),
+    LOOK(per_mm, 'b'),
+    LOOK(symlog, 'd'),
+    LOOK(overlay, 'b'),
+    LOOK(white, 'd'),
+    ENUM(snow_look, domain, domain_at, NULL),
 };
 
 #define FILL(given, fields, record) \

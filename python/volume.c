@@ -510,6 +510,7 @@ static PyMethodDef volume_methods[] = {
     METHOD("_freeze", volume_freeze, METH_NOARGS, "the voxels stay"),
     METHOD("_close", volume_close, METH_NOARGS, "gives its memory back"),
     METHOD("_look", volume_look, METH_VARARGS, "a transfer function"),
+    METHOD("_ground", volume_ground, METH_VARARGS, "where white begins, or 0"),
     METHOD("_render", volume_render, METH_VARARGS, "a picture"),
     METHOD("_views", volume_views, METH_NOARGS, "back and up of each view"),
     METHOD("_slice_axis", volume_slice_axis, METH_O, "of the grid and world"),

@@ -54,7 +54,6 @@ typedef enum snow_domain { /* what the values of control points mean */
     SNOW_DOMAIN_OBJECT,   /* shares, of the background's end to the brightest */
     SNOW_DOMAIN_SYMMETRIC /* shares, of as far below 0 as above; 0.5 is 0 */
 } snow_domain;
-
 /* What a transfer function is made of; by default all is chosen from the
  * histogram. Arrays and texts stay the caller's. Colours come from `colors`,
  * else `base`, else `preset`, whose opacities others alone (data) replace. */
@@ -78,6 +77,7 @@ typedef struct snow_look {
     size_t gradient_opacity_count;
     double symlog; /* linear up to it, logarithms beyond; -1: chosen */
     bool overlay;  /* of a second volume in a first's picture (docs/looks.md) */
+    double white;  /* mixed colours this bright are clear: 0 to 1; 0: none */
 } snow_look;
 SNOW_RECORD(snow_look);
 /* For `look` (or NULL) on `volume`, the same on every machine. A preset in data

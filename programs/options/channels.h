@@ -12,6 +12,7 @@ typedef struct channel_pick {
     range_value range; /* SNOW_RANGE_AUTO: the file's, or chosen */
     double opacity;    /* a factor on opacities */
     bool light;        /* emitted, of which noise is left out */
+    double white;      /* the ground of the colours it is a part of; or 0 */
 } channel_pick;
 
 typedef struct channel_list {

@@ -103,6 +103,7 @@ int channels_choose(const options *opts, const snow_volume_info *info,
     channels_fill(&list, info, opts->colormap);
     out->list = list;
     out->chosen = true;
+    channels_find_ground(opts, info, out);
     return CONTINUE;
 }
 
@@ -116,26 +117,18 @@ typedef struct channel_colors {
     snow_opacity_point opacities[4];
 } channel_colors;
 
-/* One slice, or up to five of 16 times as many rows and columns: a picture, as
- * the automatic look has it. */
-static bool is_picture(const snow_volume_info *info) {
-    const int64_t *n = info->dims;
-    for (int i = 0; i < 3; i++)
-        if (n[i] <= 5 && n[(i + 1) % 3] >= (n[i] > 1 ? 16 * n[i] : 2) &&
-            n[(i + 2) % 3] >= (n[i] > 1 ? 16 * n[i] : 2))
-            return true;
-    return false;
-}
-
 /* Colours and, where no histogram is asked, opacities: those of a projection,
  * and of voxels that are colours: faint enough that the colour is not that of
- * the border, where values are between; but a picture is what it is. */
+ * the border, where values are between; but a picture is what it is, and on a
+ * white ground the darkest is as opaque. */
 static void take_color(const options *opts, const snow_volume_info *info,
                        const snow_channel *of, const channel_pick *pick,
                        channel_colors *scratch, snow_look *look) {
-    static const snow_opacity_point own[2][4] = {
+    static const snow_opacity_point own[3][4] = {
         {{0, 0}, {0.04, 0}, {0.15, 0.25}, {1, 0.3}},
-        {{0, 1}, {0.04, 1}, {0.15, 1}, {1, 1}}};
+        {{0, 1}, {0.04, 1}, {0.15, 1}, {1, 1}},
+        {{0, 0.6}, {0.04, 0.6}, {0.15, 0.6}, {1, 0.6}}};
+    const int ground = channels_are_picture(info) ? 1 : pick->white > 0 ? 2 : 0;
     const bool flat = mode_is_projection(opts->mode);
     const double dim = flat || of->own ? 0 : DIM;
     double rgb[3];
@@ -153,7 +146,7 @@ static void take_color(const options *opts, const snow_volume_info *info,
         look->preset = flat ? "linear" : NULL;
         return;
     }
-    memcpy(scratch->opacities, own[is_picture(info)], sizeof own[0]);
+    memcpy(scratch->opacities, own[ground], sizeof own[0]);
     if (flat)
         scratch->opacities[1] = (snow_opacity_point){1, 1};
     if (flat || of->own)
@@ -218,7 +211,8 @@ snow_status channels_look(snow_comm *comm, const options *opts,
                       .low = range.low,
                       .high = range.high,
                       .log = opts->scale.log,
-                      .symlog = opts->scale.symlog};
+                      .symlog = opts->scale.symlog,
+                      .white = pick->white};
     take_color(opts, info, of, pick, &scratch, &look);
     if (opts->gradient_opacities.count) {
         look.gradient_opacities = opts->gradient_opacities.points;
@@ -325,6 +319,10 @@ void channels_describe(const channel_set *c, char *out, size_t size) {
             (long long)pick->index, named ? " " : "", named ? pick->name : "",
             *pick->color ? " " : "", pick->color, range, opacity);
     }
+    if (c->list.count && c->list.picks[0].white > 0 && used < size)
+        snprintf(out + used, size - used,
+                 "; white ground clear (the border is brighter than %.2g)",
+                 c->list.picks[0].white);
 }
 
 void channels_close_volumes(channel_set *c) {
@@ -338,5 +336,5 @@ void channels_close(channel_set *c) {
     channels_close_volumes(c);
     for (int n = 0; n < SNOW_CHANNELS_MAX; n++)
         snow_transfer_free(c->looks[n]);
-    *c = (channel_set){.chosen = c->chosen};
+    *c = (channel_set){.chosen = c->chosen, .ground = c->ground};
 }

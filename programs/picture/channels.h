@@ -7,12 +7,20 @@
 #include <snowglass/ranks.h>
 #include <snowglass/snowglass.h>
 
+/* The ground that voxels of own colours lie on, which is looked for once: above
+ * 0 it is white, and the brightness from which on it is clear. */
+typedef struct channels_ground {
+    bool known;
+    double white;
+} channels_ground;
+
 /* Those of a picture; the first one's volume and look may be the caller's. */
 typedef struct channel_set {
     channel_list list; /* none: the volume is drawn alone */
     snow_volume *volumes[SNOW_CHANNELS_MAX];
     snow_transfer *looks[SNOW_CHANNELS_MAX];
     bool chosen; /* the list is; it holds for all steps */
+    channels_ground ground;
 } channel_set;
 
 /* Those that the options name or, where they leave it open, the file shows.
@@ -22,6 +30,14 @@ typedef struct channel_set {
  * calls leave the set as it is.  Returns CONTINUE or an exit code. */
 int channels_choose(const options *opts, const snow_volume_info *info,
                     const char *why, channel_set *out);
+
+/* Looks for a white ground, unless it is known (ground.c). */
+void channels_find_ground(const options *opts, const snow_volume_info *info,
+                          channel_set *c);
+
+/* One slice, or up to five of 16 times as many rows and columns: a picture, as
+ * the automatic look has it. */
+bool channels_are_picture(const snow_volume_info *info);
 
 /* The note that the first one of a file is drawn alone, and why. */
 void channels_note(const options *opts, const snow_volume_info *info,

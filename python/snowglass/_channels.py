@@ -27,6 +27,8 @@ DIM = 0.5
 OWN = ((0.0, 0.0), (0.04, 0.0), (0.15, 0.25), (1.0, 0.3))
 #: The same of a picture: of one slice, or a few large ones.
 SOLID = ((0.0, 1.0), (0.04, 1.0), (0.15, 1.0), (1.0, 1.0))
+#: The same on a white ground, where the darkest is as opaque.
+ON_WHITE = ((0.0, 0.6), (0.04, 0.6), (0.15, 0.6), (1.0, 0.6))
 NONE_SAID: Mapping[str, Any] = {"name": "", "color": None, "window": None,
                                 "shown": False, "own": False, "light": False}
 
@@ -212,6 +214,7 @@ class Mixture:
     colors: Sequence[str]
     numbers: Sequence[int]
     shares: Sequence[float]
+    white: float = 0  #: the brightness of a ground that is clear
 
     def layers(self) -> tuple[tuple[_snowglass.Volume, _snowglass.Transfer,
                                     bool, float], ...]:
@@ -236,7 +239,9 @@ class Mixture:
             low, high = transfer.domain
             words = [str(number)] if name == f"channel {number}" else [str(number), name]
             rows.append(" ".join([*words, color, f"{low:g}..{high:g}"]))
-        return f"channel{'s'[len(rows) < 2:]} " + ", ".join(rows)
+        return f"channel{'s'[len(rows) < 2:]} " + ", ".join(rows) + (
+            f"; white ground clear (the border is brighter than {self.white:.2g})"
+            if self.white else "")
 
 
 class Channels:
@@ -251,6 +256,7 @@ class Channels:
         self.count, self.first, self.listed = count, first, listed
         self.why, self._open = why, open
         self._opened: dict[int, _snowglass.Volume] = {}
+        self._white: Optional[float] = None  #: of a ground, once it is known
 
     @property
     def light(self) -> bool:
@@ -328,12 +334,28 @@ class Channels:
             return None
         drawn = [change(volume) for volume in self.volumes(base)]
         colors = [self._color(n, look, mode) for n in range(len(drawn))]
+        white = self._ground(drawn, look, mode)
         return Mixture(
-            drawn, [self._transfer(volume, n, color, look, mode) for
+            drawn, [self._transfer(volume, n, color, look, mode, white) for
                     n, (volume, color) in enumerate(zip(drawn, colors))],
             [self._said(n)["name"] or f"channel {self.numbers[n]}"
              for n in range(len(drawn))], colors, self.numbers,
-            [pick.opacity for pick in self.picks])
+            [pick.opacity for pick in self.picks], white)
+
+    def _ground(self, drawn: Sequence[Any], look: Look, mode: str) -> float:
+        """Where white begins that colours of voxels lie on; 0: they do not."""
+        said = {number: (volume, self._said(n)) for n, (number, volume) in
+                enumerate(zip(self.numbers, drawn))}
+        if sorted(self.numbers) != [0, 1, 2] or mode != "over" or \
+                look.opacity is not None or \
+                not all(each["own"] for _, each in said.values()) or \
+                _is_picture(drawn[0]._info["dims"]):
+            return 0
+        if self._white is None:
+            (red, _), (green, _), (blue, _) = (said[n] for n in range(3))
+            self._white = red._ground(green, blue,
+                                      [said[n][1]["window"] for n in range(3)])
+        return self._white
 
     def warn(self, why: Optional[str]) -> None:
         warn_of_one(self.first, self.count, why)
@@ -360,7 +382,7 @@ class Channels:
             "#%02x%02x%02x" % tuple(level & 255 for level in levels)
 
     def _transfer(self, volume: _snowglass.Volume, n: int, color: str,
-                  look: Look, mode: str) -> _snowglass.Transfer:
+                  look: Look, mode: str, white: float) -> _snowglass.Transfer:
         flat, said, pick = mode != "over", self._said(n), self.picks[n]
         kind, low, high = _parse_range(
             pick.range or (look.range if is_ranged(look) else said["window"]) or
@@ -377,8 +399,9 @@ class Channels:
             colors = [(0, *(dim * part for part in rgb)), (1, *rgb)]
             fields["domain"] = "range"
             opacities = ((0, 0), (1, 1)) if flat else \
-                (SOLID if _is_picture(volume._info["dims"]) else OWN) \
-                if said["own"] else None
+                (SOLID if _is_picture(volume._info["dims"]) else
+                 ON_WHITE if white else OWN) if said["own"] else None
+            fields["white"] = white
         made = volume._look(fields, kind, colors, opacities,
                             look.gradient_opacity)
         if kind in ("auto", "robust", "slices", "signal") and made.domain[0] == 0 and \

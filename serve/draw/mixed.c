@@ -27,7 +27,7 @@ snow_volume **mixed_volume(drawing *d, int n) {
 /* What was said when the volume was opened is not said again. */
 static int choose(const drawing *d, channel_list *list) {
     static options quiet; /* large; one thread draws */
-    channel_set set = {.chosen = false};
+    channel_set set = {.ground = d->state.channels.ground};
     quiet = d->opts;
     quiet.verbosity = -1;
     int done =

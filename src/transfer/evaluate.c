@@ -22,6 +22,15 @@ double snow_part_of_decades(double value, double a, double b) {
     return (snow_log2_rising(value) - from) / (to - from);
 }
 
+double snow_white_share(double white, double least, double opacity) {
+    const double ground = white * opacity;
+    if (!(least < ground))
+        return 0;
+    if (!(least > 0))
+        return 1;
+    return snow_opacity_of(snow_clarity(opacity), 1 - least / ground) / opacity;
+}
+
 /* The position of `value` on the way from a to b, which differ; uses halves if
  * their distance exceeds the largest double. */
 static double part_of_way(bool log, double value, double a, double b) {

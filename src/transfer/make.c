@@ -43,6 +43,10 @@ static snow_status check_look(snow_context *context, const snow_look *look) {
                          "logarithms and symmetric ones from %g on exclude one "
                          "another; give one of them, with a finite number",
                          look->symlog);
+    if (!(look->white >= 0 && look->white <= 1))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "a white of %g is no brightness; give 0 to 1",
+                         look->white);
     if (look->opacities && !look->opacity_count)
         return snow_fail(
             context, SNOW_STATUS_BAD_USAGE,
@@ -322,6 +326,7 @@ static snow_status build(const snow_volume *volume,
         own ? look->gradient_opacity_count : builder->gradient_count);
     transfer->unshaded = builder->unshaded && !look->opacities;
     transfer->preset = builder->preset;
+    transfer->white = look->white;
     if (status == SNOW_STATUS_OK && builder->scale.log)
         status = snow_transfer_set_log(transfer);
     if (status != SNOW_STATUS_OK) {

@@ -173,6 +173,7 @@ snow_status snow_transfer_get_look(const snow_transfer *transfer,
         .opacity_count = transfer->opacity_count,
         .gradient_opacities = transfer->gradients,
         .gradient_opacity_count = transfer->gradient_count,
+        .white = transfer->white,
     };
     return SNOW_RECORD_FILL(transfer->context, snow_look, &look, out);
 }

@@ -18,6 +18,7 @@ struct snow_transfer {
     bool unshaded;      /* made for pictures without shading */
     bool log;      /* interpolated in the logarithm of values, all above 0 */
     double linear; /* above 0: points follow a symmetric logarithm (scale.h) */
+    double white;  /* above 0: the ground of the colours that it is a part of */
     snow_opacity_point *gradients; /* factors by gradient magnitude */
     size_t gradient_count;         /* 0: no gradient opacity */
     snow_label *labels;            /* whose colours these are, or NULL */
@@ -66,6 +67,11 @@ bool snow_transfer_has_labels(const snow_transfer *transfer,
 #define SNOW_SLOPES_WIDE 2
 int snow_transfer_slopes(const snow_transfer *transfer,
                          const snow_volume_info *info);
+
+/* What is left of a mixed colour, whose darkest part `least` is multiplied by
+ * its opacity: nothing as bright as a white ground, all of black, as of what
+ * takes light away.  Lengths that follow one another make that of their sum. */
+double snow_white_share(double white, double least, double opacity);
 
 /* So that rounding never decides whether a voxel is above the threshold. */
 #define SNOW_THRESHOLD_MARGIN 0.0001

@@ -22,9 +22,9 @@ def ome_tiff(path, channels, words=""):
         channel[z].tobytes() for z in range(NZ) for channel in channels], words)
 
 
-def rgb_nifti(path):
+def rgb_nifti(path, ground=0):
     ball = (numpy.indices((16, 16, 16)) - 8) ** 2
-    voxels = numpy.where(ball.sum(axis=0)[..., None] < 40, (210, 120, 60), 0)
+    voxels = numpy.where(ball.sum(axis=0)[..., None] < 40, (210, 120, 60), ground)
     nifti(path, (16, 16, 16), (128, 24), voxels.astype(numpy.uint8).tobytes())
 
 
@@ -37,6 +37,7 @@ class Channels(InFolder):
         ome_tiff("plain.tif", ARRAYS)
         ome_tiff("two.tif", ARRAYS[:2])
         rgb_nifti("rgb.nii")
+        rgb_nifti("white.nii", 245)
 
     def test_what_a_file_says(self):
         info = sg.Volume(self.file).info
@@ -64,6 +65,7 @@ class Channels(InFolder):
                 ("plain.tif", [], {}, {}),
                 ("two.tif", ["--legend"], {}, {"legend": True}),
                 ("rgb.nii", ["-m", "mip"], {}, {"mode": "mip"}),
+                ("white.nii", [], {}, {}),
                 ("ome.tif", ["--range", "30,180", "--legend"], {},
                  {"look": sg.Look(range=(30, 180)), "legend": True}),
                 ("ome.tif", ["--opacity", "40:0,200:0.4"], {},

@@ -31,6 +31,7 @@ typedef struct over_state {
     over_batch batch;
     double mixed[4];   /* of the group that is gathered */
     int group, mixing; /* of the next sample; of that */
+    bool ground;       /* that has the picture's volume */
 } over_state;
 
 void snow_raycast_see_look(snow_raycast_pass *pass) {
@@ -57,13 +58,19 @@ void snow_raycast_see_look(snow_raycast_pass *pass) {
 
 /* --- compositing ---------------------------------------------------------- */
 
-/* The group that is gathered. */
-static void composite(int last, over_state *state) {
-    const double through = 1 - state->pixel[last];
+/* The group that is gathered; that of the picture may have a white ground. */
+static void composite(const snow_raycast_pass *pass, int last,
+                      over_state *state) {
+    double *mixed = state->mixed, through = 1 - state->pixel[last];
+    if (state->ground && pass->transfer->white > 0 && last == 3)
+        through *= snow_white_share(pass->transfer->white,
+                                    fmin(mixed[0], fmin(mixed[1], mixed[2])),
+                                    mixed[last]);
     for (int c = 0; c <= last; c++) {
-        state->pixel[c] += through * state->mixed[c];
-        state->mixed[c] = 0;
+        state->pixel[c] += through * mixed[c];
+        mixed[c] = 0;
     }
+    state->ground = false;
 }
 
 /* Colours of samples in one place add up, of opacities the largest counts. */
@@ -73,13 +80,14 @@ static void gather(const snow_raycast_pass *pass, const snow_ray *ray,
     const float *sample = state->batch.samples + n * (last + 1);
     const double before = state->opaque, alpha = (double)sample[last];
     if (state->batch.group[n] != state->mixing)
-        composite(last, state);
+        composite(pass, last, state);
     state->mixing = state->batch.group[n];
     for (int c = 0; c < last; c++)
         state->mixed[c] += (double)sample[c];
     state->mixed[last] = fmax(state->mixed[last], alpha);
     if (!state->batch.own[n])
         return;
+    state->ground = true;
     state->opaque += (1 - before) * alpha;
     if (!state->depth || before >= 0.5 || state->opaque < 0.5)
         return;
@@ -219,7 +227,7 @@ void snow_raycast_over(const snow_raycast_pass *pass, const snow_ray *ray,
             break;
     }
     flush(pass, ray, eye, &state);
-    composite(channels - 1, &state);
+    composite(pass, channels - 1, &state);
     const double most =
         pass->layer_count ? state.pixel[channels - 1] : INFINITY;
     for (int c = 0; c < channels; c++)

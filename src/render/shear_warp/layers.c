@@ -12,7 +12,9 @@
  * their order does not matter. */
 #include "render/shear_warp/layers.h"
 #include "render/shear_warp/internal.h"
+#include "transfer/transfer.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A layer of a tile: its slabs that have anything, and which is next. */
@@ -81,6 +83,20 @@ static void mix(float *mixed, const float *planes, int phases) {
             mixed[n] = planes[n] > mixed[n] ? planes[n] : mixed[n];
 }
 
+/* Colours as bright as a white ground are clear. */
+static void clear_white(float *mixed, int phases, double white) {
+    for (int phase = 0; phase < phases; phase++)
+        for (size_t i = 0; i < PLANE; i++) {
+            float *at = mixed + (size_t)phase * 4 * PLANE + i;
+            const float least =
+                fminf(at[0], fminf(at[PLANE], at[(size_t)2 * PLANE]));
+            const double share = snow_white_share(
+                white, (double)least, (double)at[(size_t)3 * PLANE]);
+            for (size_t c = 0; c < 4; c++)
+                at[c * PLANE] *= (float)share;
+        }
+}
+
 static void lay_behind(float *planes, const float *kept, const float *mixed,
                        int phases, float closed) {
     for (int phase = 0; phase < phases; phase++)
@@ -97,13 +113,13 @@ static void lay_behind(float *planes, const float *kept, const float *mixed,
 /* The slabs before `end` of layers in one place; of a single one as they are,
  * else each in planes of its own.  `room_of_two` holds two pictures of them. */
 static bool draw_group(layer_walk *w, int count, int end, int x, int y,
-                       void *scratch, float *room_of_two) {
+                       double white, void *scratch, float *room_of_two) {
     const snow_value_splat *splat = &w->splat;
     const size_t bytes = snow_value_planes_bytes(splat);
     const float closed = (float)splat->closed / 32767;
     float *kept = room_of_two, *mixed = kept + bytes / sizeof *kept;
     bool drawn = false;
-    int active = 0;
+    int active = white > 0;
     for (int n = 0; n < count; n++)
         active += next_slab(&w[n]) < end;
     if (active > 1) {
@@ -119,6 +135,8 @@ static bool draw_group(layer_walk *w, int count, int end, int x, int y,
         if (active > 1)
             mix(mixed, scratch, splat->phases);
     }
+    if (active > 1 && white > 0)
+        clear_white(mixed, splat->phases, white);
     if (active > 1)
         lay_behind(scratch, kept, mixed, splat->phases, closed);
     return drawn;
@@ -167,7 +185,8 @@ bool snow_value_draw_stack(const snow_value_drawing *job,
             for (next = n + 1; next < count; next++)
                 if (walks[next].group != walks[n].group)
                     break;
-            drawn |= draw_group(&walks[n], next - n, end, x, y, scratch,
+            drawn |= draw_group(&walks[n], next - n, end, x, y,
+                                walks[n].group ? 0 : path->white, scratch,
                                 room_of_two);
         }
     }

@@ -49,6 +49,7 @@ static snow_value_params params_of(const snow_value_path *path,
 
 snow_status snow_value_encode_layers(snow_value_path *path,
                                      const snow_value_params *params) {
+    path->white = params->transfer->white;
     for (int n = 0; n < path->layer_count; n++) {
         const snow_value_params own = params_of(path, params, n);
         snow_stats unused = {.size = sizeof unused};
