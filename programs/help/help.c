@@ -70,7 +70,7 @@ static int refuse_word(const char *word) {
     guess_offer_all(&near, snow_preset_name);
     const char *now = renamed_option(word + strspn(word, "-"));
     if (now)
-        return fail_usage("%s: is now %s", word, now);
+        return fail_usage("%s: %s", word, now);
     const char *what = "is not a verb, topic, option or preset";
     char meant[128];
     if (guess_write(&near, "", meant, sizeof meant))

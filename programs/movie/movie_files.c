@@ -1,5 +1,5 @@
-/* movie_files.c - the files of time steps: named one by one, or by a pattern
- * with a number. */
+/* movie_files.c - the files of time steps: named one by one, by a pattern with
+ * a number, or by one of a shell that has not taken it (glob(7)). */
 #define _XOPEN_SOURCE 700
 #include "movie/movie_files.h"
 #include "commands/commands.h"
@@ -232,56 +232,73 @@ static int add_pattern(const options *opts, const char *pattern,
     return done;
 }
 
+#define STARS "*?["
+
+/* Where a digit of each stands, the numbers that begin there; else letters. */
+static int compare_parts(const char **a, const char **b) {
+    if (!isdigit((unsigned char)**a) || !isdigit((unsigned char)**b)) {
+        const unsigned char x = (unsigned char)*(*a)++;
+        const unsigned char y = (unsigned char)*(*b)++;
+        return (x > y) - (x < y);
+    }
+    *a += strspn(*a, "0");
+    *b += strspn(*b, "0");
+    const size_t m = strspn(*a, "0123456789"), n = strspn(*b, "0123456789");
+    const int order = m == n ? strncmp(*a, *b, m) : m > n ? 1 : -1;
+    *a += m;
+    *b += n;
+    return order;
+}
+
+static int by_numbers_within(const void *x, const void *y) {
+    const char *a = *(char *const *)x, *b = *(char *const *)y;
+    int order = 0;
+    while (!order && (*a || *b))
+        order = compare_parts(&a, &b);
+    return order ? order : strcmp(*(char *const *)x, *(char *const *)y);
+}
+
+/* The files of a pattern such as run_*.h5:/rho, by the numbers in their
+ * names. */
+static int add_stars(const char *pattern, step_files *out) {
+    const char *set = set_in(pattern);
+    char path[2 * PATH_MAX];
+    glob_t found;
+    snprintf(path, sizeof path, "%.*s",
+             set ? (int)(set - pattern) : PATH_MAX - 1, pattern);
+    const int fault = glob(path, GLOB_ERR | GLOB_NOSORT, NULL, &found);
+    const char *why = fault == GLOB_NOMATCH ? "no file matches this pattern"
+                                            : "a folder cannot be listed";
+    if (fault == GLOB_NOSPACE)
+        return steps_fail_memory();
+    if (fault) {
+        say("%s: %s; correct it", pattern, why);
+        globfree(&found);
+        return SNOW_STATUS_BAD_INPUT;
+    }
+    qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv,
+          by_numbers_within);
+    int done = CONTINUE;
+    for (size_t i = 0; i < found.gl_pathc && done == CONTINUE; i++) {
+        snprintf(path, sizeof path, "%s%s", found.gl_pathv[i], set ? set : "");
+        done = add_path(out, path);
+    }
+    globfree(&found);
+    return done;
+}
+
+/* Where the file's part of a path has one of some characters. */
+static const char *sign_in(const char *path, const char *signs) {
+    const char *set = set_in(path), *sign = strpbrk(path, signs);
+    return set && sign > set ? NULL : sign;
+}
+
 bool files_are_meant(const char *path) {
     char file[PATH_MAX];
     file_of_input(path, file, sizeof file);
-    const char *set = set_in(path), *sign = strchr(file, '%');
     /* of a file that is there, the data set may have a pattern */
-    return sign && !is_there(file) && !(set && sign > file + (set - path));
-}
-
-/* Numbers in names count as such. */
-static int by_name(const void *a, const void *b) {
-    const char *x = *(char *const *)a, *y = *(char *const *)b;
-    while (*x && *y) {
-        if (isdigit((unsigned char)*x) && isdigit((unsigned char)*y)) {
-            char *x_end, *y_end;
-            const unsigned long long first = strtoull(x, &x_end, 10);
-            const unsigned long long second = strtoull(y, &y_end, 10);
-            if (first != second)
-                return first < second ? -1 : 1;
-            x = x_end;
-            y = y_end;
-        } else if (*x != *y) {
-            break;
-        } else {
-            x++;
-            y++;
-        }
-    }
-    return (unsigned char)*x - (unsigned char)*y;
-}
-
-/* Adds what matches a name with * or ?; false where that is one file's name, or
- * nothing matches. */
-static bool add_matches(const char *path, step_files *out, int *done) {
-    char file[PATH_MAX], whole[2 * PATH_MAX];
-    const char *set = set_in(path);
-    const size_t length = set ? (size_t)(set - path) : strlen(path);
-    glob_t found;
-    if (length >= sizeof file || is_there(path))
-        return false;
-    snprintf(file, sizeof file, "%.*s", (int)length, path);
-    if (!strpbrk(file, "*?") || is_there(file) ||
-        glob(file, GLOB_NOSORT, NULL, &found) != 0)
-        return false;
-    qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv, by_name);
-    for (size_t i = 0; i < found.gl_pathc && *done == CONTINUE; i++) {
-        snprintf(whole, sizeof whole, "%s%s", found.gl_pathv[i], path + length);
-        *done = add_path(out, whole);
-    }
-    globfree(&found);
-    return true;
+    return sign_in(path, "%" STARS) && !is_there(file) &&
+           strncmp(path, "phantom:", 8) != 0;
 }
 
 /* A missing file must be found now, not in the ninetieth minute of the
@@ -304,10 +321,11 @@ int steps_find(const options *opts, step_files *out) {
     int done = CONTINUE;
     for (int i = 0; i < opts->operand_count && done == CONTINUE; i++) {
         const char *path = opts->operands[i];
-        if (files_are_meant(path))
-            done = add_pattern(opts, path, out);
-        else if (!add_matches(path, out, &done))
+        if (!files_are_meant(path))
             done = add_file(path, out);
+        else
+            done = sign_in(path, "%") ? add_pattern(opts, path, out)
+                                      : add_stars(path, out);
     }
     return done;
 }

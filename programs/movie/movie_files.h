@@ -5,8 +5,8 @@
 #include "movie/movie.h"
 
 /* The files, in order: each operand is a file, or a pattern of numbered ones
- * (run_%04d.nrrd), both with a data set in them where they have several
- * (run_%04d.h5:/rho).  A number in the name of the data set is the file's
+ * (run_%04d.nrrd) or of any (run_*.nrrd), with a data set in them where they
+ * have several (run_%04d.h5:/rho).  A number in the name of the data set is the file's
  * (data_%T.h5:/data/%T/rho). */
 typedef struct step_files {
     char **paths;
@@ -14,8 +14,8 @@ typedef struct step_files {
     bool gaps; /* numbers may be missing between others */
 } step_files;
 
-/* Whether a path is a pattern of files: it has a number, and no file has that
- * name. */
+/* Whether a path is a pattern of files: it has a number or a star, and no file
+ * has that name. */
 bool files_are_meant(const char *path);
 
 /* Finds the files.  A pattern stands for all existing files.  A missing number

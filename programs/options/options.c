@@ -154,7 +154,7 @@ static int refuse_unknown(const verb_row *verb, const char *word, int code) {
     char name[64], near[128];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
     if (renamed_option(name))
-        return fail_usage("--%s: is now %s", name, renamed_option(name));
+        return fail_usage("--%s: %s", name, renamed_option(name));
     /* getopt reports unknown and ambiguous abbreviations in the same way, but
      * they need different advice. */
     int hits = 0;
@@ -287,8 +287,8 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
          * another option begins so. */
         const bool whole = !word || strcspn(word, "=") == strlen(row->name);
         if (!whole && renamed_option(word))
-            return fail_usage("--%.*s: is now %s", (int)strcspn(word, "="),
-                              word, renamed_option(word));
+            return fail_usage("--%.*s: %s", (int)strcspn(word, "="), word,
+                              renamed_option(word));
         if (!whole)
             return fail_usage("--%s: unknown option; did you mean --%s?", word,
                               row->name);

@@ -1,36 +1,45 @@
-/* renamed.c - the table of old spellings, which the release drops. */
+/* renamed.c - the table of old spellings, which the release drops, and of those
+ * of other programs. */
 #include "options/renamed.h"
 
 #include <stddef.h>
 #include <string.h>
 
+#define NOW "is now "
+#define HERE "is here "
+
 static const struct {
     const char *old, *now;
 } rows[] = {
-    {"axes", "--box axes"},
-    {"ambient", "--material A,D,S,N"},
-    {"diffuse", "--material A,D,S,N"},
-    {"footprint", "--kernel NAME:N"},
-    {"legend-title", "--legend=TITLE"},
-    {"level", "--window W,L"},
-    {"log", "--scale log"},
-    {"opacity-unit", "--config '{\"opacity-unit\": \"mm\"}'"},
-    {"outline", "--box outline"},
-    {"overlay-colormap", "--overlay-look COLOURS[,RANGE[,OPACITY]]"},
-    {"overlay-opacity", "--overlay-look COLOURS[,RANGE[,OPACITY]]"},
-    {"overlay-preset", "--overlay-look COLOURS[,RANGE[,OPACITY]]"},
-    {"overlay-range", "--overlay-look COLOURS[,RANGE[,OPACITY]]"},
-    {"port", "--listen :PORT"},
-    {"radix", "--combine radix:K"},
-    {"scale-bar", "--legend scale"},
-    {"shift", "--range LO,HI"},
-    {"shininess", "--material A,D,S,N"},
-    {"socket", "--listen unix:PATH"},
-    {"specular", "--material A,D,S,N"},
-    {"symlog", "--scale symlog[:X]"},
-    {"time-format", "--annotate time=FORMAT"},
-    {"time-label", "--annotate step"},
-    {"unit", "--legend=\"TITLE (UNIT)\""},
+    {"ambient", NOW "--material A,D,S,N"},
+    {"axes", NOW "--box axes"},
+    {"clim", HERE "--range LO,HI"},
+    {"cmap", HERE "--colormap NAME"},
+    {"diffuse", NOW "--material A,D,S,N"},
+    {"footprint", NOW "--kernel NAME:N"},
+    {"fov", HERE "--perspective FOV"},
+    {"legend-title", NOW "--legend=TITLE"},
+    {"level", NOW "--window W,L"},
+    {"log", NOW "--scale log"},
+    {"lut", HERE "--colormap NAME"},
+    {"opacity-unit", NOW "--config '{\"opacity-unit\": \"mm\"}'"},
+    {"outline", NOW "--box outline"},
+    {"overlay-colormap", NOW "--overlay-look COLOURS[,RANGE[,OPACITY]]"},
+    {"overlay-opacity", NOW "--overlay-look COLOURS[,RANGE[,OPACITY]]"},
+    {"overlay-preset", NOW "--overlay-look COLOURS[,RANGE[,OPACITY]]"},
+    {"overlay-range", NOW "--overlay-look COLOURS[,RANGE[,OPACITY]]"},
+    {"port", NOW "--listen :PORT"},
+    {"radix", NOW "--combine radix:K"},
+    {"resolution", HERE "--size WxH"},
+    {"scale-bar", NOW "--legend scale"},
+    {"shift", NOW "--range LO,HI"},
+    {"shininess", NOW "--material A,D,S,N"},
+    {"socket", NOW "--listen unix:PATH"},
+    {"specular", NOW "--material A,D,S,N"},
+    {"symlog", NOW "--scale symlog[:X]"},
+    {"time-format", NOW "--annotate time=FORMAT"},
+    {"time-label", NOW "--annotate step"},
+    {"unit", NOW "--legend=\"TITLE (UNIT)\""},
 };
 
 const char *renamed_option(const char *name) {

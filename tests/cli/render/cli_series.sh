@@ -53,6 +53,20 @@ mv mixed_10.nrrd mixed_08.nrrd
 refused 3 "two of one number" 'another file of mixed_%T.nrrd has this number too' \
     "$TOOL" info mixed_%T.nrrd --time 0
 refused 3 "a pattern without files" 'no file matches' "$TOOL" info no_%d.nrrd
+refused 3 "or of stars" 'no_\*.nrrd: no file matches' "$TOOL" movie 'no_*.nrrd' -o p_%d.png
+
+# Stars that no shell has taken, by the numbers in the names: 9 before 10.
+mkdir 'a[1' stars
+cp run_0000.nrrd stars/s9.nrrd
+cp run_0010.nrrd stars/s10.nrrd
+cp run_0030.nrrd 'a[1/x*.nrrd'
+told "files by a star" 's10.nrrd: step 1 of 2' "$TOOL" info 'stars/s*.nrrd' --time 1
+run 0 "a movie of them" "$TOOL" movie -q "${look[@]}" 'stars/s[0-9]*.nrrd' -o star_%d.png
+run 0 "by names" "$TOOL" movie -q "${look[@]}" stars/s9.nrrd stars/s10.nrrd -o named_%d.png
+check "has the same frames" cmp star_0.png named_0.png
+check "in this order" cmp star_1.png named_1.png
+check "and no others" [ "$(echo star_*.png)" = "star_0.png star_1.png" ]
+run 0 "a file of such a name" "$TOOL" render "${look[@]}" 'a[1/x*.nrrd' -o star.png
 
 # Physical time: the nearest step.
 printed "by time" '^times +3 .these values: step 1' "$TOOL" info steps.visit --time 0.12

@@ -26,6 +26,8 @@ x --json|--json: is not an option of render but of info
 --footprint 3 x|--footprint: is now --kernel NAME:N$
 --kernel gaus:5 x|did you mean gauss\?
 help level|level: is now --window W,L$
+--cmap bone x|--cmap: is here --colormap NAME$
+slice --clim=0,9 x|--clim: is here --range LO,HI$
 -q info x|info: the verb must come first; give snowglass info
 rendr x -o y.png|rendr: is not a verb; did you mean render\?
 x y -o z.png|x: is neither a verb nor a file; verbs: render turntable movie
