@@ -157,19 +157,20 @@ static PyObject *image_save(PyObject *self, PyObject *args,
     static char *names[] = {"path",    "background", "bits",  "overwrite",
                             "letters", "legend",     "unit",  "scale_bar",
                             "title",   "depth",      "range", "bars",
-                            "texts",   NULL};
+                            "texts",   "progress",   NULL};
     image_object *o = (image_object *)self;
     snow_image_options options;
     PyObject *file, *background = Py_None, *depth = Py_None, *rgb = NULL;
+    PyObject *progress = Py_None;
     char *path = NULL;
     int overwrite = 0;
     annotations a = {.range = {NAN, NAN}};
     snow_image_options_init(&options);
     if (!PyArg_ParseTupleAndKeywords(
-            args, keywords, "O|$OipppzpzO(dd)O!O!", names, &file, &background,
+            args, keywords, "O|$OipppzpzO(dd)O!O!O", names, &file, &background,
             &options.bits, &overwrite, &a.letters, &a.legend, &a.unit,
             &a.scale_bar, &a.title, &depth, &a.range[0], &a.range[1],
-            &PyTuple_Type, &a.bars, &PyTuple_Type, &a.texts))
+            &PyTuple_Type, &a.bars, &PyTuple_Type, &a.texts, &progress))
         return NULL;
     if (file != Py_None && PyBytes_AsStringAndSize(file, &path, NULL))
         return NULL;
@@ -187,7 +188,7 @@ static PyObject *image_save(PyObject *self, PyObject *args,
         !(rgb = PyBytes_FromStringAndSize(NULL, o->shape[0] * o->shape[1] * 3)))
         return NULL;
     unsigned char *bytes = rgb ? (unsigned char *)PyBytes_AsString(rgb) : NULL;
-    if (!context_enter(o->context, Py_None)) {
+    if (!context_enter(o->context, progress)) {
         Py_XDECREF(rgb);
         return NULL;
     }

@@ -122,16 +122,17 @@ static int range_of(const char *name) {
     return -1;
 }
 
-/* look(volume, fields, range, colors, opacities, gradient opacities) */
+/* look(volume, fields, range, colors, opacities, gradient opacities,
+ * progress) */
 PyObject *volume_look(PyObject *self, PyObject *args) {
     volume_object *o = (volume_object *)self;
-    PyObject *given, *colors, *opacities, *gradients;
+    PyObject *given, *colors, *opacities, *gradients, *progress = Py_None;
     const char *range;
     snow_look look;
     snow_status status;
     snow_look_init(&look);
-    if (!PyArg_ParseTuple(args, "OsOOO", &given, &range, &colors, &opacities,
-                          &gradients) ||
+    if (!PyArg_ParseTuple(args, "OsOOO|O", &given, &range, &colors, &opacities,
+                          &gradients, &progress) ||
         !record_fill_look(given, &look))
         return NULL;
     look.range = (snow_range)range_of(range);
@@ -151,7 +152,7 @@ PyObject *volume_look(PyObject *self, PyObject *args) {
     transfer_object *made = NULL;
     if (!PyErr_Occurred())
         made = (transfer_object *)PyType_GenericAlloc(transfer_type, 0);
-    if (made && volume_use(o, Py_None)) {
+    if (made && volume_use(o, progress)) {
         Py_INCREF((PyObject *)o->context);
         made->context = o->context;
         CALL(o->context, status,

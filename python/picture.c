@@ -136,16 +136,28 @@ static snow_status draw(request *r) {
     return status;
 }
 
+/* Whether nothing is seen, as the command line finds it. */
+static bool is_empty(snow_image *image) {
+    const size_t channels = (size_t)snow_image_channels(image);
+    const size_t count = (size_t)snow_image_width(image) *
+                         (size_t)snow_image_height(image) * channels;
+    const float *pixels = snow_image_pixels(image);
+    for (size_t n = channels - 1; n < count; n += channels)
+        if (channels == 1 ? !isnan(pixels[n]) : pixels[n] != 0)
+            return false;
+    return true;
+}
+
 /* What the last picture took. */
-static PyObject *stats_of(const volume_object *o) {
+static PyObject *stats_of(const volume_object *o, snow_image *image) {
     const snow_stats *s = snow_frame_stats(o->frame);
     return Py_BuildValue(
-        "{sssssssssisLsLsdsd}", "method", snow_method_name(s->method),
-        "encoding", snow_encoding_name(s->encoding), "kernel",
-        snow_kernel_name(s->kernel), "isa", snow_isa_name(s->isa), "threads",
-        s->threads, "voxels", (long long)s->voxels, "interesting",
-        (long long)s->interesting, "sparse_ratio", s->sparse_ratio, "seconds",
-        s->seconds_frame);
+        "{sOsssssssssisLsLsdsd}", "empty", is_empty(image) ? Py_True : Py_False,
+        "method", snow_method_name(s->method), "encoding",
+        snow_encoding_name(s->encoding), "kernel", snow_kernel_name(s->kernel),
+        "isa", snow_isa_name(s->isa), "threads", s->threads, "voxels",
+        (long long)s->voxels, "interesting", (long long)s->interesting,
+        "sparse_ratio", s->sparse_ratio, "seconds", s->seconds_frame);
 }
 
 /* Directions of the camera that are all to fit, or NULL with none of them;
@@ -266,7 +278,7 @@ PyObject *volume_render(PyObject *self, PyObject *args) {
         CALL(o->context, status, draw(&r));
     PyMem_Free(turns);
     if (viewed && status == SNOW_STATUS_OK)
-        stats = stats_of(o);
+        stats = stats_of(o, r.image);
     context_leave(o->context, status);
     PyObject *image = finish_image(type, &r, &info);
     PyObject *out = answer(type, &r, image, stats);
@@ -412,11 +424,12 @@ static void widen_view(const sheet *s, snow_view *view) {
 }
 
 /* slices(Image, transfer, axis or None, columns, rows, (x, y, z), indices,
- * width, height, settings, layers, whether they are mixed, share) -> (image,
- * places) */
+ * width, height, settings, layers, whether they are mixed, share, progress) ->
+ * (image, places) */
 PyObject *volume_slices(PyObject *self, PyObject *args) {
     volume_object *o = (volume_object *)self;
     PyObject *type, *transfer, *settings, *layers, *indices, *out = NULL;
+    PyObject *progress;
     double list[10000];
     int mixed;
     request r = {.volume = o};
@@ -424,11 +437,11 @@ PyObject *volume_slices(PyObject *self, PyObject *args) {
     snow_status status = SNOW_STATUS_OK;
     snow_settings_init(&r.settings);
     snow_view_init(&r.view);
-    if (!PyArg_ParseTuple(args, "OO!zii(ddd)OiiOO!pd", &type, transfer_type,
+    if (!PyArg_ParseTuple(args, "OO!zii(ddd)OiiOO!pdO", &type, transfer_type,
                           &transfer, &s.axis, &s.columns, &s.rows, &s.at[0],
                           &s.at[1], &s.at[2], &indices, &s.size[0], &s.size[1],
                           &settings, &PyTuple_Type, &layers, &mixed,
-                          &r.shares[0]) ||
+                          &r.shares[0], &progress) ||
         !record_fill_settings(settings, &r.settings))
         return NULL;
     const Py_ssize_t count = PySequence_Size(indices);
@@ -439,8 +452,10 @@ PyObject *volume_slices(PyObject *self, PyObject *args) {
     s.count = (int)count;
     r.transfer = (transfer_object *)transfer;
     r.mixed = mixed;
-    if (!volume_use(o, Py_None))
+    if (!volume_use(o, progress))
         return NULL;
+    r.settings.stop = context_is_stopped;
+    r.settings.stop_user = o->context;
     snow_volume_info info = *snow_volume_get_info(o->volume);
     if (read_layers(layers, &r))
         CALL(o->context, status, draw_sheet(&r, &s));

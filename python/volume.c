@@ -193,14 +193,14 @@ failed:
 }
 
 static PyObject *volume_masked(PyObject *module, PyObject *args) {
-    PyObject *type, *given, *mask;
+    PyObject *type, *given, *mask, *progress = Py_None;
     const char *labels;
     snow_label_range ranges[SNOW_LABELS_MAX];
     size_t count = 0;
     snow_status status;
     (void)module;
-    if (!PyArg_ParseTuple(args, "OO!O!z", &type, volume_type, &given,
-                          volume_type, &mask, &labels))
+    if (!PyArg_ParseTuple(args, "OO!O!z|O", &type, volume_type, &given,
+                          volume_type, &mask, &labels, &progress))
         return NULL;
     if (labels && !snow_labels_parse(labels, ranges, SNOW_LABELS_MAX, &count))
         return PyErr_Format(PyExc_ValueError,
@@ -208,7 +208,7 @@ static PyObject *volume_masked(PyObject *module, PyObject *args) {
                             "such as 1,4-7",
                             labels);
     volume_object *o = volume_begin(type, given);
-    if (!o || !volume_use((volume_object *)given, Py_None)) {
+    if (!o || !volume_use((volume_object *)given, progress)) {
         Py_XDECREF((PyObject *)o);
         return NULL;
     }
@@ -415,13 +415,12 @@ static PyObject *volume_inspect(PyObject *module, PyObject *args) {
     return out;
 }
 
-static PyObject *volume_statistics(PyObject *self, PyObject *nothing) {
+static PyObject *volume_statistics(PyObject *self, PyObject *progress) {
     volume_object *o = (volume_object *)self;
     snow_volume_statistics s;
     snow_status status;
-    (void)nothing;
     snow_volume_statistics_init(&s);
-    if (!volume_use(o, Py_None))
+    if (!volume_use(o, progress))
         return NULL;
     CALL(o->context, status, snow_volume_get_statistics(o->volume, &s));
     if (!context_leave(o->context, status))
@@ -438,8 +437,9 @@ static PyObject *volume_histogram(PyObject *self, PyObject *args) {
     volume_object *o = (volume_object *)self;
     double low, high;
     Py_ssize_t bins;
+    PyObject *progress;
     snow_status status;
-    if (!PyArg_ParseTuple(args, "ddn", &low, &high, &bins))
+    if (!PyArg_ParseTuple(args, "ddnO", &low, &high, &bins, &progress))
         return NULL;
     if (bins < 1 || bins > 1 << 24)
         return PyErr_Format(PyExc_ValueError, "%zd bins: give 1 to 16777216",
@@ -448,7 +448,7 @@ static PyObject *volume_histogram(PyObject *self, PyObject *args) {
     if (!counts)
         return PyErr_NoMemory();
     PyObject *list = NULL;
-    if (volume_use(o, Py_None)) {
+    if (volume_use(o, progress)) {
         CALL(o->context, status,
              snow_volume_histogram(o->volume, low, high, (size_t)bins, counts));
         if (context_leave(o->context, status))
@@ -464,9 +464,10 @@ static PyObject *volume_save(PyObject *self, PyObject *args) {
     volume_object *o = (volume_object *)self;
     const char *path;
     int overwrite;
+    PyObject *progress;
     snow_status status;
-    if (!PyArg_ParseTuple(args, "yp", &path, &overwrite) ||
-        !volume_use(o, Py_None))
+    if (!PyArg_ParseTuple(args, "ypO", &path, &overwrite, &progress) ||
+        !volume_use(o, progress))
         return NULL;
     CALL(o->context, status, snow_volume_save(o->volume, path, overwrite));
     if (!context_leave(o->context, status))
@@ -503,9 +504,10 @@ static PyObject *volume_freeze(PyObject *self, PyObject *nothing) {
 }
 
 static PyMethodDef volume_methods[] = {
-    METHOD("_statistics", volume_statistics, METH_NOARGS, "of finite values"),
-    METHOD("_histogram", volume_histogram, METH_VARARGS, "low, high, bins"),
-    METHOD("_save", volume_save, METH_VARARGS, "path, overwrite"),
+    METHOD("_statistics", volume_statistics, METH_O, "of finite values"),
+    METHOD("_histogram", volume_histogram, METH_VARARGS,
+           "low, high, bins, progress"),
+    METHOD("_save", volume_save, METH_VARARGS, "path, overwrite, progress"),
     METHOD("_regrid", volume_regrid, METH_VARARGS, "grid, nearest"),
     METHOD("_freeze", volume_freeze, METH_NOARGS, "the voxels stay"),
     METHOD("_close", volume_close, METH_NOARGS, "gives its memory back"),

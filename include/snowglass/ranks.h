@@ -15,7 +15,6 @@ typedef enum snow_partition { /* how the volume is partitioned */
     SNOW_PARTITION_COUNTED,   /* slabs of about equal cost */
     SNOW_PARTITION_BRICKS     /* boxes of equally many interesting voxels */
 } snow_partition;
-
 typedef enum snow_combine { /* how local images are combined */
     SNOW_COMBINE_AUTO = 0,  /* by the number of ranks and the image's size */
     SNOW_COMBINE_TREE,      /* the paper's hierarchy */
@@ -23,7 +22,6 @@ typedef enum snow_combine { /* how local images are combined */
     SNOW_COMBINE_DIRECT,    /* direct send */
     SNOW_COMBINE_RADIX      /* radix-k */
 } snow_combine;
-
 typedef struct snow_ranks_options {
     size_t size;
     snow_partition cut;
@@ -54,13 +52,6 @@ SNOW_API snow_status snow_ranks_repartition(snow_comm *comm,
 /* Of the whole, whose parts the ranks' volumes are. */
 SNOW_API snow_status snow_ranks_new_transfer(snow_comm *comm,
     const snow_volume *volume, const snow_look *look, snow_transfer **out);
-
-/* Fits a view's target and zoom to what a look shows from each azimuth (NULL:
- * the view's; docs/model.md, section 2). Collective, unless `comm` is NULL. */
-SNOW_API snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
-    const snow_transfer *transfer, const snow_settings *settings,
-    const double *azimuths, size_t count, snow_view *view);
-
 /* Not collective: the boxes of `ranks` ranks along `slice_axis` (0 to 2),
  * without ghosts, and their interesting voxels; either may be NULL. */
 SNOW_API snow_status snow_ranks_partition(const snow_volume *volume,

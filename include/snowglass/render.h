@@ -155,7 +155,17 @@ SNOW_API const char *snow_colormap_for(const snow_volume_info *info);
 /* The automatic background of a mode, red, green and blue: of projections the
  * lowest colour of the look, black without one. */
 SNOW_API void snow_mode_background(snow_mode, const snow_transfer *, double[3]);
-/* A file (or phantom:NAME) with the default look; view, settings or NULL. */
+
+/* Fits a view's target and zoom to what a look shows from each azimuth (NULL:
+ * the view's; docs/model.md, section 2). One process: `comm` NULL; or all. */
+struct snow_comm;
+SNOW_API snow_status snow_view_fit(struct snow_comm *, const snow_volume *,
+    const snow_transfer *transfer, const snow_settings *settings,
+    const double *azimuths, size_t count, snow_view *view);
+
+/* The tool's first picture of a file or phantom:NAME, to the bit (of several
+ * channels the first); PNG, WebP and JPEG without options have its background
+ * and letters. View, settings may be NULL. */
 SNOW_API snow_status snow_render_file(snow_context *context, const char *path,
     const snow_view *view, const snow_settings *settings, snow_image **image);
 

@@ -15,7 +15,8 @@
  *   snow_image_free(image);
  *   snow_context_free(context);
  *
- * For more pictures: snow_volume_open, snow_transfer_new_for_volume, a frame,
+ * In loops: snow_volume_open, snow_transfer_new_for_volume, snow_view_fit, a
+ * frame and snow_frame_render_bytes, whose bytes a window shows, or
  * snow_frame_render. Until 1.0 each minor version may change the interface. */
 #ifndef SNOWGLASS_SNOWGLASS_H
 #define SNOWGLASS_SNOWGLASS_H

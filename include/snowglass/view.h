@@ -38,9 +38,9 @@ SNOW_RECORD(snow_view);
 SNOW_API snow_status snow_view_from_name(
     snow_context *context, const char *name, snow_view *out);
 
-/* Anterior of a patient, else +z; of a volume thinner than a quarter of its
- * shorter side, its face. Its name (NULL), and what a name means for a volume:
- * axial, coronal, sagittal, front and back are other sides of a patient. */
+/* The usual one of a volume (docs/output.md), into a record that snow_view_init
+ * has begun; its name (NULL), and what a name means for a volume: axial,
+ * coronal, sagittal, front and back are other sides of a patient. */
 SNOW_API snow_status snow_view_default(const snow_volume *, snow_view *out);
 SNOW_API const char *snow_view_name_for(
     const snow_volume_info *info, const char *name);

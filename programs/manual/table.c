@@ -98,6 +98,25 @@ static json_t *statuses(void) {
     return rows;
 }
 
+/* What an option is without being given; null: nothing, or no one value. */
+static json_t *usual(const option_row *row) {
+    static options all;
+    const char *field = (const char *)&all + row->field;
+    const void *at = field;
+    options_init(&all);
+    if (row->read == read_choice || row->read == read_kernel)
+        return json_string(*(const char *const *)at);
+    if (row->read == read_real || row->read == read_strength)
+        return json_real(*(const double *)at); /* of NaN: null */
+    if (row->read == read_integer)
+        return json_integer(*(const int64_t *)at);
+    if (row->read == read_flag)
+        return json_boolean(*(const bool *)at);
+    return row->read == read_size
+               ? json_integer(*(const int64_t *)at) /* of a square */
+               : NULL;
+}
+
 static json_t *option(snow_context *context, const option_row *row) {
     const char letter[2] = {row->letter};
     json_t *made = named(row->name, row->text), *taken = json_array();
@@ -112,6 +131,8 @@ static json_t *option(snow_context *context, const option_row *row) {
                         json_string(topic_table[row->topic].name));
     json_object_set_new(made, "verbs", taken);
     json_object_set_new(made, "reader", json_string(reader_name(row->read)));
+    json_t *value = usual(row);
+    json_object_set_new(made, "default", value ? value : json_null());
     json_object_set_new(made, "low", json_real(row->low));
     json_object_set_new(made, "high", json_real(row->high));
     json_object_set_new(made, "key", json_boolean(is_key(context, row->name)));

@@ -13,6 +13,7 @@
 #include <ctype.h>
 #include <getopt.h>
 #include <math.h>
+#include <snowglass/recipe.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -21,35 +22,36 @@
 /* Above all characters, so that long options do not collide with letters. */
 #define FIRST_LONG 256
 
-/* The shading defaults come from the library, so that the tool cannot disagree
- * with it. */
+/* What recipes have comes from the library, so that the tool, the viewer and
+ * simulations cannot disagree; Python has it from here (programs/manual/). */
 void options_init(options *out) {
-    snow_settings settings;
-    snow_settings_init(&settings);
+    snow_recipe recipe;
+    snow_recipe_init(&recipe);
+    const snow_settings settings = recipe.settings;
     *out = (options){
-        .size = {512, 512},
+        .size = {recipe.width, recipe.height},
         .background = {.automatic = true},
         .threshold = -1,
         .encoding = snow_encoding_name(settings.encoding),
         .method = snow_method_name(settings.method),
         .kernel = snow_kernel_name(settings.kernel),
-        .mode = "over",
+        .mode = snow_mode_name(settings.mode),
         .iso = NAN,
         .window = {NAN, NAN},
         .shade = "phong",
         .light = {settings.light},
         .material = {settings.ambient, settings.diffuse, settings.specular,
                      settings.shininess},
-        .zoom = 1,
+        .zoom = recipe.zoom,
         .fit = "visible",
         .progress = "auto",
-        .isa = "auto",
-        .quality = "normal",
+        .isa = snow_isa_name(settings.isa),
+        .quality = snow_quality_name(settings.quality),
         .cut = "auto",
         .combine = "auto",
         .timeout = 300,
         .frames = 120,
-        .fps = 25,
+        .fps = recipe.fps,
         .moment = NAN,
     };
 }

@@ -7,7 +7,7 @@ import math
 from dataclasses import replace
 from typing import Any, Callable, Mapping, Optional, Sequence
 
-from . import _first, _recipes, _snowglass
+from . import _colormaps, _first, _recipes, _snowglass
 from ._images import Image
 from ._looks import Look, is_ranged, look_of, shows_window
 from ._volumes import Volume
@@ -187,8 +187,8 @@ class Drawing:
         options = self._options(recipe)
         options["size"] = [_shrunk(side, shrink) for side in options["size"]]
         options.setdefault("mode", self.mode)
-        image = self.volume.render(self.transfer, quality=quality,
-                                   progress=progress, **options)
+        image = self.volume._picture(self.transfer, quality=quality, quiet=True,
+                                     progress=progress, **options)
         image._ranged = is_ranged(self._look_of(recipe)) or shows_window(
             str(options.get("mode")), self.transfer)
         return image
@@ -202,7 +202,7 @@ class Drawing:
             "letters": False, "legend": False,
             "quality": "draft"}
         look = Look(preset=preset) if preset else self.look or Look()
-        return self._twin().render(look, progress=progress, **options)
+        return self._twin()._picture(look, progress=progress, quiet=True, **options)
 
     def _twin(self) -> Volume:
         import numpy
@@ -222,9 +222,9 @@ class Drawing:
             return {}
         options.pop("target", None)
         start = float(options.get("azimuth", 0))
-        image = self.volume.render(
-            self.transfer, quality="draft",
-            _azimuths=[start + side for side in TURN], **options)
+        image = self.volume._picture(
+            self.transfer, quality="draft", quiet=True,
+            azimuths=[start + side for side in TURN], **options)
         target, zoom = image._view
         target = target or self.middle()[0]
         return {"zoom": float(f"{zoom:.5g}"), "fit": "volume",
@@ -309,7 +309,7 @@ def _shrunk(side: int, shrink: int) -> int:
 def begin(volume: Volume, look: Any, options: Mapping[str, Any]
           ) -> tuple[Drawing, dict[str, Any]]:
     """The drawing, and the recipe that a page begins with."""
-    chosen = look_of(look)
+    chosen = look_of(_colormaps.resolved(volume, look))
     unsayable = chosen if chosen.colors is not None or \
         chosen.range in ("robust", "slices", "least") else None
     mixed = volume._mixed

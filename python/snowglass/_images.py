@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Iterator, Mapping, NamedTuple, \
     Optional, Sequence, Union
 
 from . import _arrays, _checks, _recipes, _snowglass
+from ._progress import Progress, progress_of
 
 if TYPE_CHECKING:
     import numpy.typing
@@ -82,7 +83,8 @@ class Image(_snowglass.Image):
         return _recipes.command(self.recipe)
 
     def save(self, path: Path, *, background: Color = "auto", bits: int = 0,
-             overwrite: bool = True, title: Optional[str] = None) -> "Image":
+             overwrite: bool = True, title: Optional[str] = None,
+             progress: Progress = None) -> "Image":
         """Writes .png, .webp, .jpg, .npy, .pfm, .exr or .tif, whole or not at
         all.  PNG, WebP and JPEG show letters and bars; the others hold the
         pixels as they are.
@@ -104,7 +106,8 @@ class Image(_snowglass.Image):
             background = None
         depth = self.depth if name.lower().endswith(b".exr") else None
         picture._save(name, background=self._color(background), bits=bits,
-                      overwrite=overwrite, depth=depth, **marks)
+                      overwrite=overwrite, depth=depth,
+                      progress=progress_of(progress), **marks)
         return self
 
     def _color(self, background: Color) -> Optional[Sequence[float]]:

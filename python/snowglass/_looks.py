@@ -9,6 +9,9 @@ from . import _checks
 
 Range = Union[str, Tuple[float, float]]
 
+#: Opacities by name, along the range; _r: falling.
+OPACITIES = ("linear", "linear_r", "sigmoid", "sigmoid_r")
+
 
 @dataclasses.dataclass(frozen=True)
 class Look:
@@ -16,7 +19,9 @@ class Look:
     volume's histogram.
 
     preset        a name of `snowglass.presets()`
-    colormap      a name of `snowglass.colormaps()`, reversed by _r; replaces the colours
+    colormap      a name of `snowglass.colormaps()`, reversed by _r, or colours at data
+                  values, "60:#000000,255:#ff8800"; where Matplotlib is installed also
+                  one of its maps, by name or itself; replaces the colours
                   (`cmap` is another name for it)
     range         (low, high): the data values over which colours and opacities
                   are spread; "full": from the smallest to the largest;
@@ -26,7 +31,9 @@ class Look:
                   CT air, -1000 to -500, as for mode minip; None: chosen
                   (`clim` is another name)
     opacity       [(value, opacity), ...], opacities 0 to 1 at data values; they
-                  replace those of a preset
+                  replace those of a preset; "linear" or "sigmoid", along the range,
+                  falling with _r; or a number 0 to 1, a factor of those that are
+                  chosen
     colors        [(value, (red, green, blue)), ...], 0 to 1
     gradient_opacity  [(magnitude, factor), ...]: factors 0 to 1 of opacities by
                   the magnitude of the gradient, in data units per unit of length
@@ -35,16 +42,16 @@ class Look:
                   on both sides, "symlog:5" from 5 on; "linear" else
     """
     preset: Optional[str] = None
-    colormap: Optional[str] = None
+    colormap: Any = None
     range: Optional[Range] = None
-    opacity: Optional[Sequence[Tuple[float, float]]] = None
+    opacity: Union[Sequence[Tuple[float, float]], str, float, None] = None
     colors: Optional[Sequence[Tuple[float, Sequence[float]]]] = None
     gradient_opacity: Optional[Sequence[Tuple[float, float]]] = None
     scale: str = "linear"
-    cmap: dataclasses.InitVar[Optional[str]] = None
+    cmap: dataclasses.InitVar[Any] = None
     clim: dataclasses.InitVar[Optional[Range]] = None
 
-    def __post_init__(self, cmap: Optional[str], clim: Optional[Range]) -> None:
+    def __post_init__(self, cmap: Any, clim: Optional[Range]) -> None:
         for name, other, value in (("colormap", "cmap", cmap),
                                    ("range", "clim", clim)):
             if value is None:
@@ -52,13 +59,15 @@ class Look:
             if getattr(self, name) is not None:
                 raise TypeError(f"give {name} or {other}, not both")
             object.__setattr__(self, name, value)
-        for name, which in (("preset", "presets"), ("colormap", "colormaps")):
-            _checks.text(name, getattr(self, name),
-                         f"a name of snowglass.{which}()")
+        _checks.text("preset", self.preset, "a name of snowglass.presets()")
+        if not callable(self.colormap):
+            _checks.text("colormap", self.colormap, "a name of "
+                         "snowglass.colormaps(), or a map of Matplotlib")
         _parse_range(self.range)
         object.__setattr__(self, "colors", _colors(self.colors))
-        for name in ("opacity", "gradient_opacity"):
-            object.__setattr__(self, name, _points(name, getattr(self, name)))
+        object.__setattr__(self, "opacity", _opacity(self.opacity))
+        object.__setattr__(self, "gradient_opacity", _points(
+            "gradient_opacity", self.gradient_opacity))
         _parse_scale(self.scale)
 
     def _arguments(self) -> tuple[Any, ...]:
@@ -70,6 +79,23 @@ class Look:
         fields = {"preset": self.preset, "colormap": self.colormap,
                   "low": low, "high": high, **_parse_scale(self.scale)}
         return fields, kind, colors, self.opacity, self.gradient_opacity
+
+
+def _opacity(given: Any) -> Any:
+    """Points, a name, or a factor."""
+    if isinstance(given, str):
+        if given in OPACITIES:
+            return given
+        raise _checks.fault("opacity", f"points (value, opacity), a factor 0 to 1, or "
+                            f"one of {', '.join(OPACITIES)}", given, ValueError)
+    is_list = hasattr(given, "__iter__") and bool(getattr(given, "ndim", 1))
+    if given is None or is_list:
+        return _points("opacity", given)
+    factor = _checks.number("opacity", given, "points (value, opacity), a name or "
+                                              "a factor 0 to 1")
+    if not 0 <= factor <= 1:
+        raise _checks.fault("opacity", "a factor 0 to 1", given, ValueError)
+    return factor
 
 
 def _points(name: str, given: Any) -> Optional[Tuple[Any, ...]]:
@@ -131,16 +157,15 @@ def look_of(look: Union[Look, str, None]) -> Look:
     if isinstance(look, Look):
         return look
     if isinstance(look, str):
-        from . import colormaps, presets
-        same = _plain(look)
-        name = _plain(look[:-2]) if look[-2:] in ("_r", "_R") else same
-        return Look(colormap=look) if name in map(_plain, colormaps()) and \
-            same not in map(_plain, presets()) else Look(preset=look)
+        from . import _colormaps, presets
+        return Look(colormap=look) if plain(look) not in map(plain, presets()) and (
+            _colormaps.is_own(look) or _colormaps.other(look)) else \
+            Look(preset=look)
     raise TypeError(f"a look must be a snowglass.Look or the name of a preset, "
                     f"not {type(look).__name__}")
 
 
-def _plain(name: str) -> str:
+def plain(name: str) -> str:
     """What counts of a name."""
     return name.lower().replace("-", "").replace("_", "")
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 import operator
 import os
 import re
-from typing import Any, Callable, Optional
+import struct
+import tempfile
+from typing import Any, Callable, Optional, Sequence
 
 from . import _checks, _first, _snowglass
 from ._images import Color
 from ._looks import is_ranged
 from ._overlays import overlaid
+from ._warnings import warn
 
 # As the command line does, in programs/movie/movie_encoder.c: 4:2:0 has even
 # sides, so that an odd one gets a black line more, and levels of BT.709.
@@ -32,7 +35,7 @@ CANNOT_WRITE = 4  # of the statuses of the library
 
 
 def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
-              progress: Optional[Callable[[str, float], Any]],
+              overwrite: bool, progress: Optional[Callable[[str, float], Any]],
               options: dict[str, Any]) -> None:
     frames, fps = _counts(frames, fps)
     start = float(options.pop("azimuth", 0))
@@ -47,19 +50,27 @@ def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
                                   options.get("overlay_look"))
     background = options.pop("background", "auto")
     suffix = os.path.splitext(path)[1].lower()
-    if re.search(r"%0?\d*d", path):
+    numbered = re.search(r"%0?\d*d", path)
+    if numbered:
         _check_pattern(path)
+    _check_absent([path % n for n in range(frames)] if numbered else [path], overwrite)
+    save: Any
+    if numbered:
         save = _save_by(path, background)
     elif suffix in ENCODERS:
         save = _Encoder(path, suffix, fps, background)
+    elif suffix == ".webp":
+        save = _WebP(path, fps, background)
     else:
-        raise ValueError(f"{path}: name a movie ({', '.join(ENCODERS)}) or "
+        raise ValueError(f"{path}: name a movie (.webp, {', '.join(ENCODERS)}) or "
                          f"files by a pattern such as turn_%04d.png")
+    empty = True
     try:
         for n, angle in enumerate(angles):
-            image = volume.render(drawn, azimuth=angle, _azimuths=angles,
-                                  **options)
+            image = volume._picture(drawn, azimuth=angle, azimuths=angles,
+                                    quiet=True, **options)
             image._ranged = True  # the same colours in all frames
+            empty = empty and image.stats["empty"]
             save(n, image)
             if n == 0:  # the frame that suits all of them
                 target, options["zoom"] = image._view
@@ -72,6 +83,22 @@ def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
         getattr(save, "abandon", lambda: None)()
         raise
     getattr(save, "finish", lambda: None)()
+    if empty:
+        warn("all frames are empty: no visible voxel is in view; volume.statistics "
+             "has the range of values, opacity= sets which are visible")
+
+
+def _check_absent(paths: Sequence[str], overwrite: bool) -> None:
+    for path in () if overwrite else paths:
+        if os.path.lexists(path):
+            _snowglass.fail(CANNOT_WRITE, f"{path}: exists; give overwrite=True or "
+                                          f"another name")
+
+
+def _check_folder(path: str) -> None:
+    if not os.path.isdir(os.path.dirname(path) or "."):
+        _snowglass.fail(CANNOT_WRITE, f"{path}: there is no such folder; make it "
+                                      f"first, or correct the name")
 
 
 def _counts(frames: Any, fps: Any) -> tuple[int, float]:
@@ -101,6 +128,59 @@ def _save_by(pattern: str, background: Color) -> Callable[[int, Any], None]:
     return save
 
 
+class _WebP:
+    """An animated WebP, of the chunks of its frames, as the command line makes it
+    (programs/movie/movie_webp.c); it is beside its place until it is whole."""
+
+    def __init__(self, path: str, fps: float, background: Color) -> None:
+        _check_folder(path)
+        self.path, self.fps, self.background = path, fps, background
+        self.partial = f"{path}.{os.getpid()}.part"
+        self.file: Any = None
+
+    def __call__(self, n: int, image: Any) -> None:
+        if self.file is None:
+            self.file = open(self.partial, "wb")
+            alpha = 0x10 if image._color(self.background) is None else 0
+            self.file.write(b"RIFF\0\0\0\0WEBP" + _chunk(
+                b"VP8X", struct.pack("<I", 2 | alpha) + self._size(image)) +
+                _chunk(b"ANIM", bytes(6)))
+        with tempfile.TemporaryDirectory() as folder:
+            frame = os.path.join(folder, "frame.webp")
+            image.save(frame, background=self.background)
+            with open(frame, "rb") as file:
+                parts = file.read()[12:]
+        if parts[:4] == b"VP8X":
+            parts = parts[8 + int.from_bytes(parts[4:8], "little"):]
+        begin, end = (int(each * 1000 / self.fps + 0.5) for each in (n, n + 1))
+        head = bytes(6) + self._size(image) + _three(max(1, end - begin)) + b"\2"
+        self.file.write(_chunk(b"ANMF", head + parts))
+
+    @staticmethod
+    def _size(image: Any) -> bytes:
+        return _three(image.width - 1) + _three(image.height - 1)
+
+    def finish(self) -> None:
+        size = self.file.tell()
+        self.file.seek(4)
+        self.file.write(struct.pack("<I", size - 8))
+        self.file.close()
+        os.replace(self.partial, self.path)
+
+    def abandon(self) -> None:
+        if self.file is not None:
+            self.file.close()
+            os.remove(self.partial)
+
+
+def _three(number: int) -> bytes:
+    return min(number, 0xffffff).to_bytes(3, "little")
+
+
+def _chunk(name: bytes, data: bytes) -> bytes:
+    return name + struct.pack("<I", len(data)) + data
+
+
 class _Encoder:
     """ffmpeg, which writes beside the place of the movie until it is whole."""
 
@@ -111,9 +191,7 @@ class _Encoder:
         if not self.program:
             raise RuntimeError(f"{path}: movies need the program ffmpeg; "
                                f"install it, or write turn_%04d.png")
-        if not os.path.isdir(os.path.dirname(path) or "."):
-            _snowglass.fail(CANNOT_WRITE, f"{path}: there is no such folder; make it "
-                                          f"first, or correct the name")
+        _check_folder(path)
         self.path, self.suffix, self.fps = path, suffix, fps
         self.background = background
         root, ext = os.path.splitext(path)

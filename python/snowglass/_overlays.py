@@ -5,7 +5,7 @@ import dataclasses
 import os
 from typing import Any, Mapping, Optional, Union
 
-from . import _arrays, _snowglass
+from . import _arrays, _colormaps, _snowglass
 from ._looks import Look, look_of
 
 
@@ -57,11 +57,11 @@ def overlaid(base: Any, overlay: Any, look: Union[Look, str, None]
         return None
     if isinstance(overlay, Overlay):  # of the frames of a movie
         return overlay
-    given = look_of(look)
     volume = _opened(base, overlay)
     # Names and colours of labels stay with the volume that was opened.
-    transfer = _look(overlay if isinstance(overlay, _snowglass.Volume) else volume,
-                     given)
+    known = overlay if isinstance(overlay, _snowglass.Volume) else volume
+    given = look_of(_colormaps.resolved(known, look))
+    transfer = _look(known, given)
     volume._regrid(base, transfer.labelled)
     if base._planes:
         volume = _snowglass.clipped(_snowglass.Volume, volume, base._planes)

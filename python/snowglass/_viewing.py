@@ -67,9 +67,6 @@ def check(recipe: Mapping[str, Any], changes: Mapping[str, Any]) -> None:
     _, look, options = _recipes.split(recipe)
     if look is not None:
         look._arguments()
-        for points in (look.opacity, look.gradient_opacity):
-            for value, opacity in points or ():
-                float(value), float(opacity)
     for name in ("preset", "colormap", "view"):
         known = _snowglass.names(name + "s")
         if changes.get(name) is not None and changes[name] not in known:

@@ -6,13 +6,17 @@ import math
 import operator
 import os
 import re
-from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Iterator, Literal, Mapping, Optional, \
+    Sequence, Union, Unpack
 
-from . import _arrays, _channels, _checks, _first, _movies, _overlays, \
+from . import _arrays, _channels, _checks, _colormaps, _first, _movies, _overlays, \
     _recipes, _snowglass
 from ._images import Image, Path
 from ._looks import Look, colors_are_open, is_ranged, look_of, shows_window
+from ._options import DEFAULTS, Data, Movie, Picture, Shot, Source, Whole
 from ._progress import Progress, progress_of
+from ._signatures import takes
+from ._warnings import warn
 
 if TYPE_CHECKING:
     import numpy.typing
@@ -67,28 +71,32 @@ class Volume(_snowglass.Volume):
     _order: tuple[int, ...] = (0, 1, 2)      # of its dimensions in memory
     _values: Optional[str] = None            # unit of the data values
 
-    def __new__(cls, source: Any, *, progress: Progress = None,
-                memory: int = 0, **options: Any) -> "Volume":
+    @takes(Source)
+    def __new__(cls, source: Any, **given: Unpack[Source]) -> "Volume":
+        options: dict[str, Any] = dict(given)
+        progress, memory = options.pop("progress", None), \
+            options.pop("memory", None) or 0
         if isinstance(source, (str, bytes, os.PathLike)):
             return cls._open(os.fsdecode(source), memory, progress, options)
         if memory:
             raise TypeError("memory counts for files only")
         _arrays.check_options(options)
-        given = _arrays.wrap(source, **options)
-        made = _snowglass.wrap(cls, given.array, given.order, given.matrix,
-                               given.slope, given.intercept, given.medical,
-                               given.unit, None, True, given.window)
-        made._axes, made._order = given.axes, given.order
-        made._values = given.values
-        made._frozen = given.frozen
-        if given.frozen:
+        one = _arrays.wrap(source, **options)
+        made = _snowglass.wrap(cls, one.array, one.order, one.matrix, one.slope,
+                               one.intercept, one.medical, one.unit, None, True,
+                               one.window)
+        made._axes, made._order = one.axes, one.order
+        made._values = one.values
+        made._frozen = one.frozen
+        if one.frozen:
             made._freeze()
         path = _arrays.file_of(source)
         if path is not None and made._is_as(path):
             made._source = {"input": path}
         return made
 
-    def __init__(self, source: Any, **options: Any) -> None:
+    @takes(Source)
+    def __init__(self, source: Any, **options: Unpack[Source]) -> None:
         pass
 
     #: The file and how it was opened, as keys of a recipe; None: an array.
@@ -246,16 +254,17 @@ class Volume(_snowglass.Volume):
     def statistics(self) -> Mapping[str, Any]:
         """voxels, finite, min, max, sum of the data values; hounsfield: whether
         they are those of a CT."""
-        return self._statistics()
+        return self._statistics(None)
 
     def histogram(self, bins: int = 256,
-                  range: Optional[tuple[float, float]] = None
+                  range: Optional[tuple[float, float]] = None, *,
+                  progress: Progress = None
                   ) -> tuple["numpy.typing.NDArray[Any]", "numpy.typing.NDArray[Any]"]:
         """Counts and edges of bins of the finite data values, as
         numpy.histogram gives them."""
         import numpy
         if range is None:
-            known = self._statistics()
+            known = self._statistics(None)
             range = (known["min"], known["max"])
             if not range[0] < range[1]:
                 range = (range[0] - 0.5, range[1] + 0.5)
@@ -264,7 +273,7 @@ class Volume(_snowglass.Volume):
         except (TypeError, ValueError) as error:
             raise _checks.fault("range", "(low, high)", range, type(error)) from None
         counts = self._histogram(low, high, _whole(
-            "bins", bins, "a whole number from 1"))
+            "bins", bins, "a whole number from 1"), progress_of(progress))
         return numpy.array(counts, numpy.int64), \
             numpy.linspace(low, high, bins + 1)
 
@@ -288,7 +297,7 @@ class Volume(_snowglass.Volume):
         return _arrays.PROCESSOR
 
     def __str__(self) -> str:
-        info, known = self.info, self._statistics()
+        info, known = self.info, self._statistics(None)
         dims = "x".join(str(each) for each in info["dims"])
         spacing = "x".join(f"{each:g}" for each in self.spacing)
         units = dict.fromkeys(self.axis_units)
@@ -307,7 +316,8 @@ class Volume(_snowglass.Volume):
 
     # --- what is made of it ---
 
-    def save(self, path: Path, *, overwrite: bool = True) -> "Volume":
+    def save(self, path: Path, *, overwrite: bool = True,
+             progress: Progress = None) -> "Volume":
         """Writes .nrrd, .nii, .nii.gz, .mha, .npy or .raw, x fastest."""
         import numpy
         volume, info = self, self.info
@@ -318,11 +328,11 @@ class Volume(_snowglass.Volume):
                             **{name: info[name] for name in
                                ("slope", "intercept", "medical", "unit")},
                             affine=info["matrix"])
-        volume._save(os.fsencode(path), overwrite)
+        volume._save(os.fsencode(path), overwrite, progress_of(progress))
         return self
 
-    def masked(self, mask: Any, labels: Union[str, int, Sequence[int], None] = None
-               ) -> "Volume":
+    def masked(self, mask: Any, labels: Union[str, int, Sequence[int], None] = None,
+               *, progress: Progress = None) -> "Volume":
         """A volume without the voxels where the mask, an array of the same
         shape, has none of the labels: a number, several, or "1,4-7" (by default:
         where it is 0)."""
@@ -332,7 +342,7 @@ class Volume(_snowglass.Volume):
         matrix = [part for row in info["matrix"] for part in row]
         other = _snowglass.wrap(Volume, voxels, (0, 1, 2), matrix, 1.0, 0.0,
                                 info["medical"], info["unit"], self)
-        made = _snowglass.masked(Volume, self, other, picked)
+        made = _snowglass.masked(Volume, self, other, picked, progress_of(progress))
         if self._mixed is not None:
             made._mixed = self._mixed.mapped(
                 self, lambda each: _snowglass.masked(_snowglass.Volume, each,
@@ -341,12 +351,13 @@ class Volume(_snowglass.Volume):
         made._values, made._one = self._values, self._one
         return made
 
-    def look(self, look: Union[Look, str, None] = None) -> str:
+    def look(self, look: Union[Look, str, None] = None, *,
+             progress: Progress = None) -> str:
         """What a look becomes for this volume, in one line."""
         mode = _first.mode(self, look, {})
         mixture = self._mixture(look, mode, {})
         return mixture.describe() if mixture else \
-            self._transfer(look, mode).description
+            self._transfer(look, mode, progress).description
 
     def _mixture(self, look: Any, mode: str, settings: Mapping[str, Any]
                  ) -> Optional[_channels.Mixture]:
@@ -358,42 +369,36 @@ class Volume(_snowglass.Volume):
             return None
         return mixed.mixture(self, look_of(look), mode, settings)
 
-    def _transfer(self, look: Union[Look, str, None], mode: str = "over"
-                  ) -> Any:
+    def _transfer(self, look: Union[Look, str, None], mode: str = "over",
+                  progress: Progress = None) -> Any:
         if isinstance(look, _snowglass.Transfer):
             return look
-        chosen = _chosen(look, mode)
-        if mode == "mip" and self._one and not is_ranged(look_of(look)) and \
+        known = _colormaps.resolved(self, look, _chosen(look, mode))
+        chosen = _chosen(known, mode)
+        if mode == "mip" and self._one and not is_ranged(look_of(known)) and \
                 chosen.range == "robust":
             chosen = dataclasses.replace(chosen, range=self._one["window"] or
                                          "signal")
         colors = self._info["first_colormap"]
-        if mode == "mip" and colors and look_of(look).preset is None and \
+        if mode == "mip" and colors and look_of(known).preset is None and \
                 chosen.colors is None:
             chosen = dataclasses.replace(
                 chosen, colormap=chosen.colormap or colors,
                 range="signal" if chosen.range == "robust" else chosen.range)
-        return self._look(*chosen._arguments())
+        arguments = (*chosen._arguments(), progress_of(progress))
+        return self._look(*arguments)
 
-    def render(self, look: Union[Look, str, None] = None, *,
-               view: Optional[str] = None, size: Union[int, Sequence[int]] = 512,
-               azimuth: float = 0, elevation: float = 0, roll: float = 0,
-               zoom: float = 1, perspective: Union[bool, float] = False,
-               position: Optional[Sequence[float]] = None,
-               target: Optional[Sequence[float]] = None,
-               up: Optional[Sequence[float]] = None, fit: str = "visible",
-               light: Union[str, Sequence[float], None] = None,
-               overlay: Any = None,
-               overlay_look: Union[Look, str, None] = None,
-               legend: Union[bool, str] = False,
-               letters: bool = True,
-               progress: Progress = None, **settings: Any) -> Image:
+    @takes(Picture)
+    def render(self, look: Union[Look, str, None] = None,
+               **options: Unpack[Picture]) -> Image:
         """A picture.
 
-        look          a Look, the name of a preset, or None: chosen, but for the
-                      options of Look that are given here: cmap="bone", ...;
-                      window is the width and the centre of a range
-        view          a side: "anterior", "left", "+z", "iso", ...; None: chosen
+        look          a Look, the name of a preset or a colour map, or None: chosen,
+                      but for the options of Look that are given here:
+                      cmap="viridis", ...; window is the width and the centre of a
+                      range
+        view          a side: "anterior", "left", "+z", "iso", "xy" (as "+z"), ...
+                      of snowglass.views(); None: chosen
         size          (width, height) in pixels, or one number for both
         azimuth, elevation, roll   degrees that the camera moves to its right
                       and up, and turns clockwise
@@ -412,24 +417,47 @@ class Volume(_snowglass.Volume):
         progress      called as progress(stage, fraction), or True: printed,
                       by tqdm where that is installed
 
-        Settings: quality ("draft", "normal", "high"), mode ("over", "mip",
-        "minip", "mean", "sum", "iso"), iso, method, threshold, shade (True or
-        "phong", False or "none"), material (ambient, diffuse, specular,
-        shininess), depth, threads,
-        deterministic, depth_darkening, occlusion, opacity_length, kernel,
-        ("gauss", or "gauss:5" with its support), encoding, isa.
+        quality       "draft", "normal" or "high"
+        mode          "over", "mip", "minip", "mean", "sum", or "iso": the surface
+                      at the data value `iso`
+        shade         True or "phong", False or "none"; None: chosen
+        material      (ambient, diffuse, specular, shininess)
+        kernel        "gauss", or "gauss:5" with its support in voxels
+        depth         True: the picture has depths, in modes over and iso
+        opacity_length   the length, in the unit of the world, that an opacity
+                      is of; None: the smallest spacing
 
-        Raises ValueError (a value out of its range, an unknown name),
-        MemoryError, snowglass.Error, KeyboardInterrupt within 0.1 s.
+        threshold, method, encoding, occlusion, depth_darkening, threads,
+        deterministic and isa are those of the command line, as `snowglass help`
+        describes them; what is not given has its default.
+
+        A picture in which nothing is seen comes with a warning.  Raises ValueError
+        (a value out of its range, an unknown name), MemoryError, snowglass.Error,
+        KeyboardInterrupt within 0.1 s.
         """
+        return self._picture(look, **_given(options))
+
+    def _picture(self, look: Any, *, view: Optional[str] = None,
+                 size: Any = DEFAULTS["size"], azimuth: float = 0,
+                 elevation: float = 0, roll: float = 0,
+                 zoom: float = DEFAULTS["zoom"],
+                 perspective: Any = False, position: Any = None, target: Any = None,
+                 up: Any = None, fit: str = DEFAULTS["fit"], light: Any = None,
+                 overlay: Any = None, overlay_look: Any = None,
+                 legend: Union[bool, str] = False,
+                 letters: bool = DEFAULTS["letters"],
+                 progress: Progress = None, azimuths: Optional[Sequence[float]] = None,
+                 quiet: bool = False, **settings: Any) -> Image:
+        """One of a movie, whose frame suits all `azimuths`; `quiet`: the caller
+        says where nothing is seen."""
         if fit not in ("visible", "volume"):
             raise ValueError(f"fit '{fit}': give visible or volume")
         if "background" in settings:
             raise TypeError("background is an option of save: pictures are "
                             "transparent until then")
         look = _given_look(look, settings)
-        azimuths = settings.pop("_azimuths", None)
         _check_render(settings, view, legend)
+        view = SIDES.get(view, view) if view else view
         shade: Any = settings.get("shade")
         if hasattr(shade, "tolist"):  # a truth of NumPy
             shade = shade.tolist()
@@ -439,10 +467,12 @@ class Volume(_snowglass.Volume):
                                         "light": light})
         if mode != "over":
             settings["mode"] = mode
+        if not isinstance(look, (_snowglass.Transfer, _channels.Mixture)):
+            look = _colormaps.resolved(self, look, _chosen(look, mode))
         mixture = self._mixture(look, mode, settings)
         first: _snowglass.Volume = mixture.volumes[0] if mixture else self
         transfer = mixture.transfers[0] if mixture else \
-            self._transfer(look, mode)
+            self._transfer(look, mode, progress)
         width, height = _sides(size)
         asked = {"view": view, "size": (width, height), "azimuth": azimuth,
                  "elevation": elevation, "roll": roll, "zoom": zoom,
@@ -476,6 +506,8 @@ class Volume(_snowglass.Volume):
             mixture.shares[0] if mixture else 1.0,
             _marks_of(annotations, mode, transfer))
         image.stats, image.depth, image._view = stats, depth, (target, zoom)
+        if stats["empty"] and not quiet:
+            warn(_emptiness(mode, settings, stats))
         if azimuths is None and not isinstance(
                 look, (_snowglass.Transfer, _channels.Mixture)):
             image._made = (self._source, self._info["unit"],
@@ -521,37 +553,38 @@ class Volume(_snowglass.Volume):
         unit = self._values or info["value_unit"]
         if not self._values and (info["hounsfield"] or info["medical"] and
                                  not info["modality"] and
-                                 self._statistics()["hounsfield"]):
+                                 self._statistics(None)["hounsfield"]):
             unit = "HU"
         if quantity and unit:
             return f"{quantity} ({unit})"
         return quantity or unit or None
 
-    def project(self, mode: str = "mip", *, view: Optional[str] = None,
-                size: Union[int, Sequence[int]] = 512, **options: Any
-                ) -> "numpy.typing.NDArray[Any]":
+    @takes(Shot)
+    def project(self, mode: Literal["mip", "minip", "mean", "sum"] = "mip",
+                **given: Unpack[Shot]) -> "numpy.typing.NDArray[Any]":
         """Largest ("mip"), smallest ("minip") or mean values along the rays, or
         their sum times length ("sum"), in data units: float32 of shape (height,
         width), NaN where a ray meets no voxel.  Options are those of render."""
         import numpy
+        options = _given(given)
         for name in ("look", *_recipes.LOOKS):
             if options.get(name) is not None:
                 raise TypeError(f"{name}: project gives data values, which have no "
                                 f"look; remove it, or render with mode={mode!r}")
         options.setdefault("fit", "volume")
         if mode in ("mean", "sum"):
-            return numpy.asarray(self.render(self._transfer(None, mode), view=view,
-                                             size=size, mode=mode, **options))
+            return numpy.asarray(self._picture(self._transfer(None, mode), mode=mode,
+                                               **options))
         if mode not in ("mip", "minip"):
             raise ValueError(f"mode '{mode}': give mip, minip, mean or sum")
-        known = self._statistics()
+        known = self._statistics(None)
         low, high = known["min"], known["max"]
         if not low < high:
             high = low + 1
         ramp = Look(colors=[(low, (0, 0, 0)), (high, (1, 1, 1))],
                     opacity=[(low, 1), (high, 1)])
-        pixels = numpy.asarray(self.render(self._transfer(ramp, mode), view=view,
-                                           size=size, mode=mode, **options))
+        pixels = numpy.asarray(self._picture(self._transfer(ramp, mode), mode=mode,
+                                             **options))
         with numpy.errstate(divide="ignore", invalid="ignore"):
             values = pixels[..., 0] / pixels[..., -1]
         return (low + (high - low) * values).astype(numpy.float32)
@@ -560,8 +593,7 @@ class Volume(_snowglass.Volume):
               look: Union[Look, str, None] = None, *,
               size: Union[int, Sequence[int], None] = None,
               kernel: Optional[str] = None, legend: Union[bool, str] = False,
-              letters: bool = True,
-              threads: int = 0) -> Image:
+              letters: bool = True, threads: int = 0) -> Image:
         """A picture of one slice, in the colours of a look, opaque.
 
         axis    "axial", "coronal" or "sagittal": the axis of the grid that is
@@ -585,6 +617,8 @@ class Volume(_snowglass.Volume):
         _check_legend(legend)
         along, index, position = self._find_slice(axis, at)
         alone = self._slice_alone(along, index)
+        if not isinstance(look, _snowglass.Transfer):
+            look = _colormaps.resolved(alone, look, _chosen(look, "slice"))
         mixture = None
         mixed = self._mixed
         if mixed is not None and not isinstance(look, _snowglass.Transfer):
@@ -613,7 +647,7 @@ class Volume(_snowglass.Volume):
                    look: Union[Look, str, None] = None, *,
                    size: Union[int, Sequence[int], None] = None,
                    kernel: Optional[str] = None, letters: bool = True,
-                   threads: int = 0) -> Image:
+                   threads: int = 0, progress: Progress = None) -> Image:
         """A picture of columns times rows slices, with their numbers and one look,
         that of the whole volume; spread evenly over those that show something,
         or over the numbers `at`.  The rest is as in Volume.slice.  `stats` has
@@ -631,7 +665,7 @@ class Volume(_snowglass.Volume):
                    for n in range(min(count, len(shown)))]
         image = self._draw_sheet("xyz"[along], columns, rows, (0.0,) * 3, indices,
                                  transfer, mixture, look, size, letters,
-                                 {"kernel": kernel, "threads": threads})
+                                 {"kernel": kernel, "threads": threads}, progress)
         image.stats = {"axis": axis, "indices": indices}
         return image
 
@@ -639,7 +673,7 @@ class Volume(_snowglass.Volume):
                     look: Union[Look, str, None] = None, *,
                     size: Union[int, Sequence[int], None] = None,
                     kernel: Optional[str] = None, letters: bool = True,
-                    threads: int = 0) -> Image:
+                    threads: int = 0, progress: Progress = None) -> Image:
         """The axial, coronal and sagittal slice through a point of the world, or
         the middle, beside one another at one scale, with lines through the
         point; else as slice_grid.  `stats` has point and indices."""
@@ -650,7 +684,7 @@ class Volume(_snowglass.Volume):
         transfer, mixture = self._sheet_look(look)
         image = self._draw_sheet(None, 0, 0, (x, y, z), [0] * 3, transfer, mixture,
                                  look, size, letters,
-                                 {"kernel": kernel, "threads": threads})
+                                 {"kernel": kernel, "threads": threads}, progress)
         image.stats = {"point": (x, y, z), "indices": image.stats["indices"]}
         return image
 
@@ -668,12 +702,13 @@ class Volume(_snowglass.Volume):
                     at: tuple[float, ...], indices: Sequence[int], transfer: Any,
                     mixture: Optional[_channels.Mixture], look: Any,
                     size: Union[int, Sequence[int], None], letters: bool,
-                    settings: Mapping[str, Any]) -> Image:
+                    settings: Mapping[str, Any], progress: Progress) -> Image:
         width, height = _sides(0 if size is None else size)
         image, places = self._slices(
             Image, transfer, axis, columns, rows, (at[0], at[1], at[2]), indices,
             width, height, settings, mixture.layers() if mixture else (),
-            mixture is not None, mixture.shares[0] if mixture else 1.0)
+            mixture is not None, mixture.shares[0] if mixture else 1.0,
+            progress_of(progress))
         annotations: dict[str, Any] = {"letters": False, "legend": False}
         if letters:
             annotations["texts"] = _sheet_texts(places, axis is not None)
@@ -779,26 +814,37 @@ class Volume(_snowglass.Volume):
                 f"'{last:g}{unit}'")
         return along, int(index), first + row[along] * index
 
+    @takes(Movie)
     def turntable(self, path: Path, look: Union[Look, str, None] = None, *,
-                  frames: int = 90, fps: float = 30, progress: Progress = None,
-                  **options: Any) -> None:
+                  frames: int = DEFAULTS["frames"], fps: float = DEFAULTS["fps"],
+                  overwrite: bool = False, **options: Unpack[Movie]) -> None:
         """Pictures of a whole turn, with one frame for all of them: files by a
-        pattern such as "turn_%04d.png", or a movie (.mp4, .webm, .gif), for
-        which ffmpeg must be installed.  Options are those of render."""
-        look = _given_look(look, options)
-        _movies.turntable(self, os.fspath(path), look, frames, fps,
-                          progress_of(progress), options)
+        pattern such as "turn_%04d.png", or a movie: .webp, or .mp4, .webm and .gif,
+        for which ffmpeg must be installed.  Files that are there stay, and
+        snowglass.Error says so, unless they are to be overwritten.  Other options
+        are those of render, and `background` that of Image.save."""
+        given = _given(options)
+        if options.get("background", "") is None:  # transparent
+            given["background"] = None
+        progress = progress_of(given.pop("progress", None))
+        _movies.turntable(self, os.fspath(path), _given_look(look, given), frames,
+                          fps, overwrite, progress, given)
 
-    def view(self, look: Union[Look, str, None] = None, **options: Any) -> Any:
-        """A snowglass.Viewer: the volume to turn, cut and colour in a notebook;
-        a picture where the package anywidget is not installed."""
+    @takes(Picture)
+    def view(self, look: Union[Look, str, None] = None, *, height: int = 540,
+             **options: Unpack[Picture]) -> Any:
+        """A snowglass.Viewer: the volume to turn, cut and colour in a notebook; a
+        picture where the package anywidget is not installed, and a warning that
+        names it.  `height` is that of the cell in pixels."""
         from .viewer import Viewer
-        return Viewer(self, look, **options)
+        return Viewer(self, look, height=height, **options)
 
 
-#: What else to give.
 #: Strengths of the lights, and the exponent of the last: the parts of `material`.
 MATERIAL = ("ambient", "diffuse", "specular", "shininess")
+#: Views by the axes of the picture, as of PyVista.
+SIDES = {"xy": "+z", "xz": "-y", "yz": "+x"}
+#: What else to give.
 VIEW = "a name of snowglass.views(), such as 'anterior', or a camera by position, " \
        "target and up"
 
@@ -848,9 +894,7 @@ def _check_render(settings: Mapping[str, Any], view: Any, legend: Any) -> None:
     """What the core of a picture would refuse without a name."""
     settable = {"material", *_snowglass.names("settings")} - {*MATERIAL, "footprint"}
     if not settings.keys() <= settable:
-        code = Volume.render.__code__
-        own = code.co_varnames[1:code.co_argcount + code.co_kwonlyargcount]
-        _checks.names(settings, (*own, *_recipes.LOOKS, *sorted(settable)), {
+        _checks.names(settings, ("look", *Picture.__annotations__), {
             name: "is an option of Volume: give it when the volume is opened"
             for name in (*_recipes.DATA, *_arrays.OPTIONS, "memory")})
     _checks.text("view", view, VIEW)
@@ -868,6 +912,27 @@ def _marks_of(annotations: Mapping[str, Any], mode: str, transfer: Any
         none if mode == "over" else transfer.domain or none
     return (annotations["legend"], annotations["unit"], range,
             annotations.get("bars"))
+
+
+def _given(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Those that are."""
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def _emptiness(mode: str, settings: Mapping[str, Any], stats: Mapping[str, Any]
+               ) -> str:
+    """Why nothing is seen, as the command line says it
+    (programs/picture/warnings.c)."""
+    if mode == "iso":
+        return f"the picture is empty: no surface of value " \
+               f"{settings.get('iso', 0):g} is in view; volume.statistics has the " \
+               f"range of values"
+    if mode == "over" and stats["interesting"] == 0:
+        return "the picture is empty: no voxel has an opacity above the threshold; " \
+               "volume.statistics has the range of values, opacity= sets which " \
+               "are visible"
+    return "the picture is empty: no visible voxel is in view; check target=, " \
+           "position=, zoom= and clip="
 
 
 def _check_legend(legend: Any) -> None:
@@ -955,14 +1020,15 @@ def _set_kernel(settings: dict[str, Any]) -> None:
     settings["footprint"] = int(support)
 
 
-def open(source: Path, **options: Any) -> Volume:
+@takes(Source)
+def open(source: Path, **options: Unpack[Source]) -> Volume:
     """A volume of a file: `Volume(source, ...)`."""
     return Volume(source, **options)
 
 
+@takes(Whole)
 def render(source: Any = None, look: Union[Look, str, None] = None, *,
-           input: Any = None, open: Optional[Mapping[str, Any]] = None,
-           **options: Any) -> Image:
+           input: Any = None, **given: Unpack[Whole]) -> Image:
     """A picture of a file, an array or a Volume; `open` holds options of Volume,
     which may be given beside it, but for `unit`; the others are those of Volume.render, or keys of a recipe: what
     `Image.recipe` gives and the command line saves, `render(**recipe)` draws,
@@ -970,7 +1036,9 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
     Volume clip, crop, time, channel, component and labels are taken, as its
     viewer has them: a crop counts the Volume's voxels, and a file is read again.
     With an axis it is a recipe of a slice, which Volume.slice draws."""
-    data, colors, options = _recipes.split(options)
+    keys = dict(given)
+    opened: Any = keys.pop("open", None) or {}
+    data, colors, options = _recipes.split(keys)
     sliced = "axis" in options or "at" in options
     if sliced:
         _recipes.check_slice(options)
@@ -981,14 +1049,16 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
         raise TypeError("give a look, or keys of one, not both")
     volume = source if source is not None else input
     if not isinstance(volume, Volume):
-        volume = Volume(volume, **{**data, **(open or {})})
+        volume = Volume(volume, progress=options.get("progress"),
+                        **{**data, **opened})
     else:
         from . import _drawing
-        volume = _drawing.part(volume, {**data, **(open or {})})
+        volume = _drawing.part(volume, {**data, **opened})
     if sliced:
         return volume.slice(look=colors if look is None else look, **options)
     options = _recipes.with_lengths(options, volume.info["unit"])
-    return volume.render(colors if look is None else look, **options)
+    return volume.render(  # a key that no picture has is refused there
+        colors if look is None else look, **options)
 
 
 class Step(Volume):
@@ -999,13 +1069,15 @@ class Step(Volume):
     _times: int = 1
 
 
-def series(pattern: Union[Path, Sequence[Path]], **options: Any
+@takes(Source)
+def series(pattern: Union[Path, Sequence[Path]], **given: Unpack[Source]
            ) -> Iterator[Step]:
     """The volumes of a series, one after the other: files by a pattern such as
     "run_%04d.h5" or "run_*.h5", a list of files, or the time steps of one file.
     Options are those of Volume.  `index` of a step is the number in its name, or
     its place among the files.  A step is closed when the next one is asked for, so that no
     more than one is in memory, unless arrays of its voxels are in use."""
+    options: dict[str, Any] = dict(given)
     if not isinstance(pattern, (str, os.PathLike)):
         paths = [(n, os.fspath(each)) for n, each in enumerate(pattern)]
     else:

@@ -13,15 +13,19 @@ import json
 import pathlib
 import re
 import shlex
-from typing import Any, Mapping, Optional, Union
+from typing import Any, Mapping, Optional, Union, Unpack
 
 from . import _recipes
 from ._drawing import Drawing, begin
 from ._images import Image
 from ._looks import Look
 from ._viewing import Viewing
-from ._volumes import Volume
+from ._options import Picture
+from ._signatures import takes
+from ._volumes import Volume, _given_look
+from ._warnings import warn
 
+INSTALL = "pip install anywidget"
 _WEB = pathlib.Path(__file__).parent / "web"
 _IMPORT = re.compile(r"(?ms)^import \{([^}]*)\}\s+from '\./(\w+)\.js';\n")
 
@@ -109,14 +113,18 @@ class Viewer(_Base):  # type: ignore[misc]
     one of quality normal, after 0.3 s one of quality high.
     """
 
+    @takes(Picture)
     def __init__(self, volume: Volume, look: Union[Look, str, None] = None, *,
-                 height: int = 540, **options: Any) -> None:
-        drawing, recipe = begin(volume, look, options)
+                 height: int = 540, **given: Unpack[Picture]) -> None:
+        options = dict(given)
+        drawing, recipe = begin(volume, _given_look(look, options), options)
         super().__init__(height=height)
         self.volume = volume
         self._look = drawing.look
         self._viewing: Optional[Viewing] = None
         if _Base is _Still:
+            warn(f"the viewer needs the package anywidget: {INSTALL}; a picture "
+                 f"stands in its place")
             self._recipe = recipe
             return
         self._viewing = Viewing(drawing, recipe, self._answer)
@@ -145,8 +153,9 @@ class Viewer(_Base):  # type: ignore[misc]
         source = self.volume._source
         file = shlex.quote(source["input"]) if source else \
             "FILE, as volume.save() writes it"
-        return f"<snowglass.Viewer: it shows itself in a notebook; elsewhere run " \
-               f"snowglass serve {file}>"
+        needs = f", after {INSTALL}" if _Base is _Still else ""
+        return f"<snowglass.Viewer: it shows itself in a notebook{needs}; elsewhere " \
+               f"run snowglass serve {file}>"
 
     def close(self) -> None:
         """Ends the widget and its thread."""

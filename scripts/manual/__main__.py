@@ -3,15 +3,16 @@
     python3 scripts/manual TABLE man [VERB|mpi]
     python3 scripts/manual TABLE header FILE
     python3 scripts/manual TABLE document N SUMMARY (FILE HEADING TITLE)...
-    python3 scripts/manual TABLE bash|zsh|fish|fish-mpi|json|options
+    python3 scripts/manual TABLE bash|zsh|fish|fish-mpi|json|options|keywords
 
 TABLE is build/table.json, the table of options, which snowglass-table writes.
 Text goes to standard output: a page of the tool, of a public header or of
-sections of documents, completions of a shell, the schema, or the options as
-Markdown."""
+sections of documents, completions of a shell, the schema, the options as
+Markdown, or those of Python."""
 import sys
 
 from documents import document, header
+from keywords import keywords
 from options import options
 from pages import page
 from schema import schema
@@ -19,7 +20,7 @@ from shells import bash, fish, fish_mpi, zsh
 from table import load
 
 ALONE = {"bash": bash, "zsh": zsh, "fish": fish, "fish-mpi": fish_mpi,
-         "json": schema, "options": options}
+         "json": schema, "options": options, "keywords": keywords}
 
 
 def lines(path, what, *words):

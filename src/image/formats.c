@@ -168,6 +168,16 @@ static snow_status name_file(snow_context *context, snow_status status,
     return status;
 }
 
+static void take_dress(const snow_image *image, const snow_image_format *format,
+                       snow_image_options *options) {
+    if (!image->dressed || !format->bits || options->flatten ||
+        options->overlay)
+        return;
+    options->flatten = true;
+    memcpy(options->background, image->ground, sizeof image->ground);
+    options->overlay = image->letters;
+}
+
 /* Refusals come first, before there is a file.  Then the writer leaves a
  * complete file or none. */
 snow_status snow_image_save(const snow_image *image, const char *path,
@@ -184,6 +194,7 @@ snow_status snow_image_save(const snow_image *image, const char *path,
                          "%s: %s holds colours, not values in data units; "
                          "write .npy, .exr, .tif or .pfm, or paint them first",
                          path, format->name);
+    take_dress(image, format, &options);
     SNOW_TRY(check_options(image->context, path, image->width, image->height,
                            format, &options));
     snow_writer *writer = NULL;

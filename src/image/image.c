@@ -31,7 +31,10 @@ snow_status snow_image_make(snow_context *context, int width, int height,
     if (!image)
         return SNOW_STATUS_NO_MEMORY;
     uint64_t samples = (uint64_t)width * (uint64_t)height * (uint64_t)channels;
-    *image = (snow_image){context, width, height, channels, false, NULL};
+    *image = (snow_image){.context = context,
+                          .width = width,
+                          .height = height,
+                          .channels = channels};
     image->pixels = snow_allocate_array(context, samples, sizeof(float));
     if (!image->pixels) {
         snow_release(context, image);
@@ -63,10 +66,18 @@ snow_status snow_image_report(const snow_image *image, int line) {
     return snow_monitor_status(monitor);
 }
 
+void snow_image_dress(snow_image *image, const double ground[3],
+                      snow_overlay *letters) {
+    image->dressed = true;
+    memcpy(image->ground, ground, sizeof image->ground);
+    image->letters = letters;
+}
+
 void snow_image_free(snow_image *image) {
     if (!image)
         return;
     snow_context *context = image->context;
+    snow_overlay_free(image->letters);
     snow_release(context, image->pixels);
     snow_release(context, image);
 }

@@ -13,9 +13,16 @@
 struct snow_image {
     snow_context *context;
     int width, height, channels;
-    bool alpha_unknown; /* its file had none, but the picture may have had */
-    float *pixels;      /* [(y * width + x) * channels] */
+    bool alpha_unknown;    /* its file had none, but the picture may have had */
+    float *pixels;         /* [(y * width + x) * channels] */
+    bool dressed;          /* files of levels show, without other options: */
+    double ground[3];      /* the background */
+    snow_overlay *letters; /* and what is drawn over it; NULL: nothing */
 };
+
+/* Dresses a picture, which takes the letters over. */
+void snow_image_dress(snow_image *image, const double ground[3],
+                      snow_overlay *letters);
 
 /* Does what snow_image_new does, but the pixels are undefined. For readers,
  * which fill them: a false size in a file then costs only address space. */

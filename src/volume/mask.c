@@ -212,9 +212,14 @@ static snow_status leave_out(const snow_volume *volume, const snow_cuts *by,
     const int64_t *dims = volume->info.dims;
     int64_t all = dims[0] * dims[1] * dims[2];
     const double slope = volume->info.slope, from = volume->info.intercept;
+    snow_monitor monitor;
+    snow_status status = SNOW_STATUS_OK;
     double values[BLOCK];
     *any = false;
-    for (int64_t first = 0; first < all; first += BLOCK) {
+    snow_monitor_begin_reading(volume->context, &monitor);
+    for (int64_t first = 0; first < all && !status &&
+                            !snow_pass_is_stopped(volume, &monitor, first);
+         first += BLOCK) {
         size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
         snow_volume_stored(volume, first, count, values);
         /* What an earlier cut has left out is beyond its planes, which cut
@@ -228,13 +233,15 @@ static snow_status leave_out(const snow_volume *volume, const snow_cuts *by,
         if (by->mask)
             mask_values(by->mask, in, first, count, values);
         if (made->clip)
-            SNOW_TRY(snow_clip_planes_apply(made->clip, dims, first, count,
-                                            by->keeps_clipped, values));
+            status = snow_clip_planes_apply(made->clip, dims, first, count,
+                                            by->keeps_clipped, values);
         for (size_t i = 0; i < count && !*any; i++)
             *any = !isnan(values[i]);
         store(made, first, count, values);
     }
-    return SNOW_STATUS_OK;
+    if (!status)
+        status = snow_monitor_status(volume->context->monitor);
+    return snow_monitor_end(&monitor, status);
 }
 
 snow_status snow_labels_check(snow_context *context,

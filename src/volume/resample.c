@@ -155,6 +155,22 @@ static void fill_row(const regrid *r, int64_t y, int64_t z) {
     }
 }
 
+static snow_status fill(const regrid *r) {
+    const int64_t *dims = r->to->info.dims;
+    snow_context *context = r->to->context;
+    snow_monitor monitor;
+    snow_monitor_begin_reading(context, &monitor);
+    for (int64_t z = 0; z < dims[2]; z++) {
+        if (monitor.entered)
+            snow_monitor_report(&monitor, SNOW_STAGE_READ, (double)z,
+                                (double)dims[2]);
+        for (int64_t y = 0;
+             y < dims[1] && !snow_monitor_look(context->monitor, 0); y++)
+            fill_row(r, y, z);
+    }
+    return snow_monitor_end(&monitor, snow_monitor_status(context->monitor));
+}
+
 /* All voxels, on dims and matrix of `box`; `what` it is for. */
 static snow_status resample(regrid *r, const snow_volume_info *box,
                             const char *what) {
@@ -185,9 +201,7 @@ static snow_status resample(regrid *r, const snow_volume_info *box,
                     what, r->nearest ? "nearest voxels" : "linear");
     r->to->masked = volume->masked;
     r->to->had_negative = volume->had_negative;
-    for (int64_t z = 0; z < dims[2]; z++)
-        for (int64_t y = 0; y < dims[1]; y++)
-            fill_row(r, y, z);
+    SNOW_TRY(fill(r));
     return volume->labelled ? snow_volume_set_labels(r->to, volume->labels,
                                                      volume->label_count)
                             : SNOW_STATUS_OK;

@@ -176,10 +176,8 @@ static void measure_value(snow_volume_statistics *m, double value,
     m->wsum += value * (double)(index % WEIGHT_PERIOD + 1);
 }
 
-/* Returns whether the caller wants a pass over the voxels to end, which
- * reports where it is a call of its own. */
-static bool is_stopped(const snow_volume *volume, snow_monitor *own,
-                       int64_t first) {
+bool snow_pass_is_stopped(const snow_volume *volume, snow_monitor *own,
+                          int64_t first) {
     if (first % WATCHED != 0)
         return false;
     if (own->entered)
@@ -199,7 +197,7 @@ snow_status snow_volume_get_statistics(const snow_volume *volume,
     size_t count;
     snow_monitor_begin_reading(volume->context, &monitor);
     for (int64_t first = 0; volume->voxels && first < m.voxels &&
-                            !is_stopped(volume, &monitor, first);
+                            !snow_pass_is_stopped(volume, &monitor, first);
          first += (int64_t)count) {
         count = next_block(volume, first, values);
         for (size_t i = 0; i < count; i++)
@@ -228,8 +226,8 @@ snow_status snow_volume_histogram(const snow_volume *volume, double lo,
     double values[BLOCK];
     size_t count;
     snow_monitor_begin_reading(volume->context, &monitor);
-    for (int64_t first = 0;
-         first < voxel_count(volume) && !is_stopped(volume, &monitor, first);
+    for (int64_t first = 0; first < voxel_count(volume) &&
+                            !snow_pass_is_stopped(volume, &monitor, first);
          first += (int64_t)count) {
         count = next_block(volume, first, values);
         for (size_t i = 0; i < count; i++) {

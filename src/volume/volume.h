@@ -170,6 +170,11 @@ void snow_swap_bytes(void *values, uint64_t count, size_t size);
  * determinant is 0 or not finite relative to the columns' lengths. */
 bool snow_matrix_invert3(const double m[4][4], double inverse[3][3]);
 
+/* Whether the caller wants a pass over the voxels to end, which is at `first`,
+ * and reports that where it is a call of its own. */
+bool snow_pass_is_stopped(const snow_volume *volume, snow_monitor *own,
+                          int64_t first);
+
 /* The native value at a linear index as a double (int64 values beyond 2^53
  * round); and `count` of them from index `first` on. */
 double snow_volume_native(const snow_volume *volume, int64_t index);

@@ -1,9 +1,8 @@
 #!/bin/bash
 # run.sh PYTHON TOOL FOLDER: the tests of the package in FOLDER, and in the
-# long tier those of its slices, documents and types (by mypy, where that and
-# pytest are), and those that hold it against the tool.  There those of the short
-# tier run once more, as short, with Python's checks of its memory and of who may
-# use it.
+# long tier those of its slices, documents and types, and those that hold it
+# against the tool.  There those of the short tier run once more, as short, with
+# Python's checks of its memory and of who may use it.
 set -eu
 python=$1 here=$(cd "$(dirname "$0")" && pwd)
 export SNOWGLASS=$2 PYTHONPATH=$3
@@ -27,7 +26,3 @@ cat "$said"
 [ $failed = 0 ] || exit 1
 [ -n "${SNOW_PRELOAD-}" ] || # which checks memory itself
     SNOW_TIER=short PYTHONMALLOC=debug "$python" -m unittest discover -s "$here" -p test_snowglass.py
-if "$python" -c 'import mypy, pytest' 2>/dev/null; then
-    cd "$PYTHONPATH"
-    "$python" -m mypy --strict --no-warn-return-any snowglass
-fi

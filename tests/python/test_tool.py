@@ -1,6 +1,8 @@
 """Pictures and movies of the package are those of the command line, byte for
 byte: the same defaults, letters, bars, background, colours of values."""
+import ctypes
 import json
+import os
 import shlex
 import shutil
 import subprocess
@@ -8,7 +10,7 @@ import subprocess
 import numpy
 
 import snowglass as sg
-from beside import TIER, InFolder
+from beside import TIER, TOOL, InFolder, plain
 
 
 def some(cases, count):
@@ -202,6 +204,31 @@ class Commands(Same):
         recipe = patient().slice("y", 5, size=40).recipe  # of an array
         self.assertNotIn("input", recipe)
         self.same_picture(sg.render(patient(), **recipe), patient().slice("y", 5, size=40))
+
+
+class FromC(Same):
+    @plain
+    def test_the_first_picture_in_one_call(self):
+        """snow_render_file, which a program calls: frame, background, letters."""
+        folder = os.path.dirname(TOOL)
+        path = os.path.join(folder, "libsnowglass.so")
+        if not os.path.exists(path):
+            self.skipTest("the library lies elsewhere")
+        library, pointer = ctypes.CDLL(path), ctypes.c_void_p
+        context, image = pointer(), pointer()
+        self.assertEqual(library.snow_context_new(None, ctypes.byref(context)), 0)
+        for make in patient, spots, cloud, plate:
+            name = self.file_of(make)
+            self.assertEqual(library.snow_render_file(
+                context, name.encode(), None, None, ctypes.byref(image)), 0)
+            for suffix in ".png", ".npy":
+                self.assertEqual(library.snow_image_save(
+                    image, ("c" + suffix).encode(), None), 0)
+                self.tool(name, "-o", "tool" + suffix)
+                self.same_bytes("c" + suffix, "tool" + suffix)
+                os.remove("c" + suffix)
+            library.snow_image_free(image)
+        library.snow_context_free(context)
 
 
 class Movies(Same):

@@ -1,0 +1,161 @@
+"""What users of matplotlib, PyVista and the command line are used to."""
+import os
+import sys
+import unittest
+
+import numpy
+
+import snowglass as sg
+from beside import InFolder
+
+try:
+    import matplotlib
+except ImportError:
+    sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)),
+                                 "stand_ins"))
+    import matplotlib
+
+RAMP = numpy.broadcast_to(numpy.arange(256, dtype=numpy.uint8), (3, 8, 256)).copy()
+
+
+def head(n=24):
+    return sg.Volume("phantom:head", dims=(n, n, n))
+
+
+class Looks(InFolder):
+    def test_a_map_of_matplotlib_has_its_colours(self):
+        volume = sg.Volume(RAMP)
+        shares = numpy.arange(256) / 255
+        for given in "bone", matplotlib.colormaps["bone"]:
+            expected = numpy.array([matplotlib.colormaps["bone"](n)[:3] for n in shares])
+            shown = numpy.asarray(volume.slice(
+                "z", 1, sg.Look(cmap=given, range=(0, 255)), kernel="box"))[4, :, :3]
+            self.assertLess(abs(shown - expected).max(), 1.6 / 255)
+        steps = [n * 0.1 for n in range(10)] if "steps" in matplotlib.colormaps else []
+        look = sg.Look(cmap="steps", range=(0, 255)) if steps else None
+        for n, share in enumerate(steps):
+            color = volume._transfer(look).evaluate(255 * (share + 0.05))
+            self.assertAlmostEqual(color[0], n / 9, delta=0.6 / 255)
+        volume.render("bone", size=32)
+
+    def test_maps_follow_the_scale_and_draw_again(self):
+        volume = sg.Volume("phantom:turbulence", dims=(16, 16, 16))
+        look = sg.Look(cmap="bone", scale="log", range=(1, 10000))
+        middle = volume._transfer(look).evaluate(100)[:3]
+        numpy.testing.assert_allclose(
+            middle, matplotlib.colormaps["bone"](0.5)[:3], atol=2 / 255)
+        for options in ({"cmap": "bone"}, {"opacity": "sigmoid", "cmap": "bone_"[:4]},
+                        {"opacity": 0.5}, {"opacity": "linear_r", "clim": (20, 90)},
+                        {"cmap": "bone", "mode": "mip"}):
+            with self.subTest(options):
+                self.round_trip(head().render(size=40, **options))
+        self.round_trip(head().slice("z", 5, sg.Look(cmap="bone")))
+
+    def test_opacities_by_name_are_those_formulas(self):
+        volume, shares = sg.Volume(RAMP), numpy.linspace(0, 1, 21)
+        for name, formula in (("linear", lambda t: t), ("linear_r", lambda t: 1 - t),
+                              ("sigmoid", lambda t: 1 / (1 + numpy.exp(10 - 20 * t))),
+                              ("sigmoid_r", lambda t: 1 / (1 + numpy.exp(20 * t - 10)))):
+            made = volume._transfer(sg.Look(opacity=name, range=(0, 255)))
+            found = [made.evaluate(255 * share)[3] for share in shares]
+            numpy.testing.assert_allclose(found, formula(shares), atol=0.01)
+        usual = head()._transfer(None)
+        made = head()._transfer(sg.Look(opacity=0.25))
+        for value in range(0, 256, 15):
+            self.assertAlmostEqual(made.evaluate(value)[3],
+                                   usual.evaluate(value)[3] / 4, places=6)
+        for wrong in "geom", 1.5, -1:
+            with self.assertRaisesRegex(ValueError, "^opacity: give .* factor 0 to 1"):
+                sg.Look(opacity=wrong)
+
+    def test_views_by_the_axes_of_the_picture(self):
+        for name, side in ("xy", "+z"), ("xz", "-y"), ("yz", "+x"):
+            image = head().render(view=name, size=24)
+            self.same_picture(image, head().render(view=side, size=24))
+            self.assertEqual(image.recipe["view"], side)
+
+    def test_an_empty_picture_warns(self):
+        volume = head()
+        for answer, options in (
+                ("no voxel has an opacity", {"opacity": [(0, 0), (255, 0)]}),
+                ("no surface of value 999", {"mode": "iso", "iso": 999}),
+                ("no visible voxel is in view", {"target": (900, 0, 0), "fit": "volume"})):
+            with self.assertWarnsRegex(sg.SnowglassWarning, answer) as caught:
+                volume.render(size=24, **options)
+            self.assertEqual(caught.filename, __file__)
+        with self.assertWarnsRegex(sg.SnowglassWarning, "all frames are empty"):
+            volume.turntable("e_%d.png", frames=2, size=24, opacity=[(0, 0)])
+        volume.turntable("f_%d.png", frames=2, size=24)  # warnings are errors
+
+
+class Movies(InFolder):
+    def test_defaults_and_webp_are_those_of_the_tool(self):
+        self.tool("turntable", "phantom:head", "--dims", "24x24x24", "-s", "24x20",
+                  "-o", "tool.webp")
+        head().turntable("ours.webp", size=(24, 20))
+        self.same_bytes("tool.webp", "ours.webp")
+        self.tool("turntable", "phantom:head", "--dims", "24x24x24", "-s", "24", "--fps",
+                  "7", "--frames", "3", "--background", "none", "-o", "tool.webp")
+        head().turntable("clear.webp", size=24, fps=7, frames=3, background=None)
+        self.same_bytes("tool.webp", "clear.webp")
+        with self.assertRaisesRegex(sg.Error, "^no/t.webp: .*make it first"):
+            head().turntable("no/t.webp", size=24, frames=1)
+
+    def test_what_is_there_stays_unless_it_is_told_otherwise(self):
+        for path, name in ("t_%d.png", "t_2.png"), ("t.webp", "t.webp"), ("t.mp4", "t.mp4"):
+            with open(name, "w", encoding="ascii") as file:
+                file.write("mine")
+            with self.assertRaisesRegex(sg.Error, f"^{name}: exists; give overwrite=True"
+                                        ) as caught:
+                head().turntable(path, frames=3, size=24)
+            self.assertEqual(caught.exception.status, 4)
+            self.assertEqual(self.bytes_of(name), b"mine")
+        self.assertFalse(os.path.exists("t_0.png"))
+        head().turntable("t_%d.png", frames=3, size=24, overwrite=True)
+        head().turntable("t.webp", frames=3, size=24, overwrite=True)
+        self.assertGreater(len(self.bytes_of("t_2.png")), 100)
+        self.assertGreater(len(self.bytes_of("t.webp")), 100)
+        self.assertEqual([each for each in os.listdir() if "part" in each], [])
+
+
+class Progress(InFolder):
+    def test_what_takes_long_reports_and_can_be_ended(self):
+        noise = numpy.random.default_rng(1).random((90, 90, 90)).astype("f4")
+        volume = sg.Volume(noise)
+        picture = volume.render(size=2400, quality="draft", threads=1)
+
+        def stop(stage, fraction):
+            raise ZeroDivisionError
+        for stage, work in (
+                ("read", lambda told: sg.Volume(
+                    "phantom:turbulence", dims=(100,) * 3, progress=told)),
+                ("read", lambda told: sg.render(
+                    "phantom:turbulence", dims=(100,) * 3, size=24, progress=told)),
+                ("render", lambda told: volume.render(
+                    size=1600, quality="high", threads=1, progress=told)),
+                ("render", lambda told: volume.project(
+                    "sum", size=1600, quality="high", threads=1,
+                    progress=told)),
+                ("write", lambda told: volume.save("v.nii.gz", progress=told)),
+                ("write", lambda told: picture.save("p.png", progress=told)),
+                ("turntable", lambda told: head().turntable(
+                    "t_%d.png", frames=2, size=24, overwrite=True, progress=told))):
+            said = []
+            work(lambda *each: said.append(each))
+            with self.subTest(stage=stage, line=work.__code__.co_firstlineno):
+                self.assertIn((stage, 1.0), said)
+                with self.assertRaises(ZeroDivisionError):
+                    work(stop)
+
+    def test_what_is_quick_here_takes_it_too(self):
+        said = []
+        for work in (head().look, head().histogram, head().slice_ortho,
+                     lambda progress: head().slice_grid(2, 2, progress=progress),
+                     lambda progress: head().masked(
+                         numpy.ones((24, 24, 24)), progress=progress)):
+            work(progress=lambda *each: said.append(each))
+        self.assertTrue(all(0 <= part <= 1 for _, part in said))
+
+
+if __name__ == "__main__":
+    unittest.main()
