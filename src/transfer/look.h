@@ -135,8 +135,9 @@ snow_status snow_transfer_builder_labels(const snow_histogram *histogram,
                                          const snow_look *look, bool asked,
                                          snow_transfer_builder *builder);
 
-/* What differs in the automatic look of an overlay of values: statistics of
- * both signs, or the colours of hot.  Errors: those of snow_count_bins. */
+/* What differs in the automatic look of a dose, and of an overlay of values:
+ * PET in SUV, statistics of both signs, or the colours of hot.  Errors: those
+ * of snow_count_bins. */
 snow_status snow_transfer_builder_overlay(const snow_histogram *histogram,
                                           const snow_look *look,
                                           snow_transfer_builder *builder);

@@ -242,7 +242,7 @@ static snow_status fill_builder(const snow_histogram *histogram,
     if (need_of(histogram->volume, look) == SNOW_NEED_COUNTS &&
         (!points || !points->color_count || !points->opacity_count))
         SNOW_TRY(snow_transfer_builder_automatic(histogram, look, builder));
-    if (look->overlay && !points)
+    if (!points)
         SNOW_TRY(snow_transfer_builder_overlay(histogram, look, builder));
     if (!builder->around_0) /* whose reach is round */
         snow_transfer_builder_round(builder);

@@ -124,7 +124,9 @@ static bool build_known(const snow_histogram *histogram, const snow_look *look,
     builder->opacity_count = 0;
     snow_transfer_builder_add_opacity(builder, start, 0);
     snow_transfer_builder_add_opacity(builder, start, dose ? 0.05 : 0.2);
-    snow_transfer_builder_add_opacity(builder, builder->high, 0.6);
+    if (dose) /* whose middle is not to be hidden by what surrounds it */
+        snow_transfer_builder_add_opacity(builder, histogram->max / 2, 0.15);
+    snow_transfer_builder_add_opacity(builder, builder->high, dose ? 0.4 : 0.6);
     builder->unshaded = builder->around_0 = false;
     builder->preset = NULL;
     builder->colormap = dose ? "turbo" : "hot";
@@ -144,13 +146,17 @@ snow_status snow_transfer_builder_overlay(const snow_histogram *histogram,
                                           snow_transfer_builder *builder) {
     const snow_volume_info *info = &histogram->volume->info;
     const bool below = histogram->min<0, above = histogram->max> 0;
+    const bool known = look->overlay || !strcmp(info->modality, "RTDOSE");
     magnitudes m;
+    if (known && snow_look_is_unranged(look) &&
+        build_known(histogram, look, builder))
+        return SNOW_STATUS_OK;
+    if (!look->overlay)
+        return SNOW_STATUS_OK;
     if (!look->colormap) {
         builder->colormap = "hot";
         builder->preset = NULL;
     }
-    if (snow_look_is_unranged(look) && build_known(histogram, look, builder))
-        return SNOW_STATUS_OK;
     if (!snow_look_is_unranged(look) || !above ||
         !(histogram->min < histogram->max) ||
         !(info->estimate || (below && histogram->fractions)) ||

@@ -603,6 +603,11 @@ for name, words, line, seen in (
     if (colored != seen[1]).any():
         oracle.fail(f"{name} over a CT", f"{colored.sum()} of {seen[1].sum()} pixels")
 
+oracle.checked += 1
+done = oracle.tool("gy.dcm", "-o", "gy.png", "-s", "40x40")
+if "turbo 0.." not in done.stderr or "from 5% of the most on" not in done.stderr:
+    oracle.fail("a dose alone", done.stderr)
+
 # Doses: their unit, and frames by their offsets or their places along z.
 for name, unit, tags, step in (
         ("grays", "Gy", {}, 2), ("no unit", "", {"DoseUnits": "RELATIVE"}, 2),

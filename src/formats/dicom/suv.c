@@ -266,7 +266,6 @@ static double philips(scan *s, uint32_t tag) {
 /* SUV of a data value; *unit is the one that is wanted, or else that of a file
  * that is of SUV. */
 static double suv_of(scan *s, const char *units, bool automatic, suv *unit) {
-    char type[MOST_TEXT];
     double factor;
     if (has_value(s->reader, OWN(0x00541000), "REPROJECTION") ||
         has_value(s->reader, OWN(0x00080008), "PROJECTION IMAGE") ||
@@ -274,6 +273,7 @@ static double suv_of(scan *s, const char *units, bool automatic, suv *unit) {
         s->lacks = "slices, which ImageType (0008,0008) or SeriesType "
                    "(0054,1000) says that these are not";
     if (!strcmp(units, "GML")) {
+        char type[MOST_TEXT];
         text_at(s->reader, OWN(0x00541006), type);
         const suv own = !strncmp(type, "LBM", 3) ? BY_LEAN_MASS
                         : !strcmp(type, "BSA")   ? BY_SURFACE
