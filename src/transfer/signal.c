@@ -31,6 +31,9 @@
 #define NORMAL 1.4826
 #define DEVIATIONS 3
 
+/* Up to which the standardized uptake of PET is usually shown. */
+#define USUAL_SUV 7.0
+
 /* How many of the finite values do not exceed one, as a share. */
 static snow_status share_up_to(const snow_histogram *histogram, double value,
                                double *share) {
@@ -103,6 +106,8 @@ snow_status snow_signal_range(const snow_histogram *histogram, double *low,
         share = BRIGHTEST; /* of a dose, of which there may be none */
         SNOW_TRY(
             snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, &share, 1, &top));
+        if (strncmp(histogram->volume->info.value_unit, "SUV", 3) == 0)
+            top = top > 0 ? USUAL_SUV : 0;
         *low = top > 0 ? 0 : *low;
         *high = top > 0 ? top : *high;
         return SNOW_STATUS_OK;
