@@ -90,7 +90,7 @@ class InFolder(unittest.TestCase):
     def same_frames(self, make, *words, frames=2):
         """The tool makes the same frames."""
         self.tool(*words, "--frames", str(frames), "-o", "tool_%d.png")
-        make("ours_%d.png", frames=frames)
+        make("ours_%d.png", frames=frames, overwrite=True)
         for n in range(frames):
             self.same_bytes(f"tool_{n}.png", f"ours_{n}.png")
 
