@@ -475,14 +475,16 @@ static PyObject *volume_save(PyObject *self, PyObject *args) {
     Py_RETURN_NONE;
 }
 
-/* _regrid(volume of the same context, nearest): resamples it to its grid. */
+/* _regrid(volume of the same context, nearest, progress): resamples it to its
+ * grid. */
 static PyObject *volume_regrid(PyObject *self, PyObject *args) {
     volume_object *o = (volume_object *)self;
-    PyObject *grid;
+    PyObject *grid, *progress;
     int nearest;
     snow_status status;
-    if (!PyArg_ParseTuple(args, "O!p", volume_type, &grid, &nearest) ||
-        !volume_use(o, Py_None))
+    if (!PyArg_ParseTuple(args, "O!pO", volume_type, &grid, &nearest,
+                          &progress) ||
+        !volume_use(o, progress))
         return NULL;
     CALL(o->context, status,
          snow_volume_regrid(&o->volume, ((volume_object *)grid)->volume,
@@ -508,7 +510,7 @@ static PyMethodDef volume_methods[] = {
     METHOD("_histogram", volume_histogram, METH_VARARGS,
            "low, high, bins, progress"),
     METHOD("_save", volume_save, METH_VARARGS, "path, overwrite, progress"),
-    METHOD("_regrid", volume_regrid, METH_VARARGS, "grid, nearest"),
+    METHOD("_regrid", volume_regrid, METH_VARARGS, "grid, nearest, progress"),
     METHOD("_freeze", volume_freeze, METH_NOARGS, "the voxels stay"),
     METHOD("_close", volume_close, METH_NOARGS, "gives its memory back"),
     METHOD("_look", volume_look, METH_VARARGS, "a transfer function"),

@@ -47,7 +47,7 @@ def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
     drawn = volume._mixture(look, mode, options) or \
         volume._transfer(look, mode)
     options["overlay"] = overlaid(volume, options.get("overlay"),
-                                  options.get("overlay_look"))
+                                  options.get("overlay_look"), progress)
     background = options.pop("background", "auto")
     suffix = os.path.splitext(path)[1].lower()
     numbered = re.search(r"%0?\d*d", path)

@@ -3,10 +3,12 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from typing import Any, Mapping, Optional, Union
+from typing import Any, Callable, Mapping, Optional, Union
 
 from . import _arrays, _colormaps, _snowglass
 from ._looks import Look, look_of
+
+Told = Optional[Callable[[str, float], Any]]  #: of progress
 
 
 @dataclasses.dataclass
@@ -23,12 +25,12 @@ def _columns(info: Mapping[str, Any]) -> list[float]:
     return [part for row in info["matrix"] for part in row]
 
 
-def _opened(base: Any, overlay: Any) -> _snowglass.Volume:
+def _opened(base: Any, overlay: Any, told: Told) -> _snowglass.Volume:
     """In the context of the first; an array lies on the grid of that."""
     kind = _snowglass.Volume
     if isinstance(overlay, (str, os.PathLike)):
         return _snowglass.open(kind, os.fsencode(overlay), {"each_time": True},
-                               None, 0, None, base)
+                               None, 0, told, base)
     info = base._info
     if isinstance(overlay, _snowglass.Volume):
         import numpy
@@ -49,20 +51,20 @@ def _look(volume: _snowglass.Volume, look: Look) -> _snowglass.Transfer:
     return volume._look({**fields, "overlay": True}, *others)
 
 
-def overlaid(base: Any, overlay: Any, look: Union[Look, str, None]
-             ) -> Optional[Overlay]:
+def overlaid(base: Any, overlay: Any, look: Union[Look, str, None],
+             told: Told = None) -> Optional[Overlay]:
     if overlay is None:
         if look is not None:
             raise TypeError("overlay_look is the look of an overlay: give one")
         return None
     if isinstance(overlay, Overlay):  # of the frames of a movie
         return overlay
-    volume = _opened(base, overlay)
+    volume = _opened(base, overlay, told)
     # Names and colours of labels stay with the volume that was opened.
     known = overlay if isinstance(overlay, _snowglass.Volume) else volume
     given = look_of(_colormaps.resolved(known, look))
     transfer = _look(known, given)
-    volume._regrid(base, transfer.labelled)
+    volume._regrid(base, transfer.labelled, told)
     if base._planes:
         volume = _snowglass.clipped(_snowglass.Volume, volume, base._planes)
     volume._freeze()

@@ -489,7 +489,8 @@ class Volume(_snowglass.Volume):
         _set_light(light, settings)
         _set_material(settings)
         _set_kernel(settings)
-        layer = _overlays.overlaid(self, overlay, overlay_look)
+        layer = _overlays.overlaid(self, overlay, overlay_look,
+                                   progress_of(progress))
         if mixture and settings.get("shade") is None:
             settings["shade"] = "none"
         if transfer.unshaded and (layer is None or layer.transfer.unshaded) \

@@ -101,6 +101,12 @@ def cases(folder):
         yield f"Python: {name}", python(looked, f"volume.render(look, threads=1, {words})")
     yield "Python: project", python(volume, "volume.project('sum', size=1024)")
     yield "Python: statistics", python(volume, "volume.statistics")
+    yield "Python: mask", python(f"{volume}\nmask = numpy.asarray(volume) > 300",
+                                 "volume.masked(mask)")
+    yield "Python: resample an overlay", python(
+        f"volume = sg.Volume(numpy.asarray(sg.Volume({large!r})), medical=True)\n"
+        f"other = sg.Volume(numpy.ones((200, 200, 200)), spacing=2, medical=True)",
+        "volume.render(overlay=other, overlay_look='hot', size=64)")
     yield "Python: slice", python(volume, "volume.slice('z')")
     yield "Python: save a volume", python(
         volume, f"volume.save({os.path.join(folder, 'o.nii.gz')!r}, overwrite=True)")

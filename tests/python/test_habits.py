@@ -1,5 +1,6 @@
 """What users of matplotlib, PyVista and the command line are used to."""
 import os
+import subprocess
 import sys
 import unittest
 
@@ -11,9 +12,10 @@ from beside import InFolder
 try:
     import matplotlib
 except ImportError:
-    sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)),
-                                 "stand_ins"))
+    place = os.path.join(os.path.dirname(os.path.abspath(__file__)), "stand_ins")
+    sys.path.insert(0, place)
     import matplotlib
+    sys.path.remove(place)
 
 RAMP = numpy.broadcast_to(numpy.arange(256, dtype=numpy.uint8), (3, 8, 256)).copy()
 
@@ -73,6 +75,13 @@ class Looks(InFolder):
             image = head().render(view=name, size=24)
             self.same_picture(image, head().render(view=side, size=24))
             self.assertEqual(image.recipe["view"], side)
+
+    def test_without_anywidget_a_viewer_says_what_to_install(self):
+        code = "import sys, warnings; sys.modules['anywidget'] = None\n" \
+               "warnings.simplefilter('error'); import snowglass as sg\n" \
+               "sg.Volume('phantom:head', dims=(8, 8, 8)).view(cmap='viridis')"
+        said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+        self.assertRegex(said.stderr, "SnowglassWarning: .*pip install anywidget")
 
     def test_an_empty_picture_warns(self):
         volume = head()

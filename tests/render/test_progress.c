@@ -10,6 +10,7 @@
 
 #include "base/clear.h"
 #include "base/monitor.h"
+#include "volume/volume.h"
 
 #include <pthread.h>
 #include <snowglass/ranks.h>
@@ -112,7 +113,7 @@ static snow_volume *phantom(snow_context *context, const char *name,
 /* What is done, with what was there before. */
 typedef struct work {
     snow_context *context;
-    snow_volume *volume;
+    snow_volume *volume, *grid;
     snow_image *image;
     const char *path;
 } work;
@@ -168,6 +169,22 @@ static snow_status choose_look(work *w) {
     return status;
 }
 
+static snow_status cut(work *w) {
+    const double plane[4] = {1, 0, 0, 40};
+    snow_volume *made = NULL;
+    snow_status status = snow_volume_clip(w->volume, plane, 1, &made);
+    snow_volume_close(made);
+    return status;
+}
+
+static snow_status resample(work *w) {
+    snow_volume *made = NULL;
+    snow_status status =
+        snow_volume_resample(w->volume, w->grid, false, "overlay", &made);
+    snow_volume_close(made);
+    return status;
+}
+
 /* The stage alone is reported, often enough; stopped at its first call, and at
  * some later ones, the work ends there, and leaves nothing. */
 static void check_work(work *w, work_fn *run, snow_stage stage, bool later) {
@@ -209,9 +226,15 @@ static void files_and_measures_are_reported_and_can_be_stopped(void **state) {
         {NULL, take_statistics, SNOW_STAGE_READ},
         {NULL, count_values, SNOW_STAGE_READ},
         {NULL, choose_look, SNOW_STAGE_READ},
+        {NULL, cut, SNOW_STAGE_READ},
+        {NULL, resample, SNOW_STAGE_READ},
     };
     char folder[SUPPORT_FOLDER_BYTES];
     work w = {.context = *state, .volume = phantom(*state, "turbulence", SIDE)};
+    w.grid = phantom(*state, "turbulence", SIDE);
+    for (int axis = 0; axis < 3; axis++)
+        w.grid->info.matrix[axis][3] = 0.4;
+    w.volume->info.medical = w.grid->info.medical = true; /* of one world */
     support_folder_make(folder);
     for (size_t n = 0; n < sizeof works / sizeof *works; n++) {
         if (works[n].name)
@@ -223,6 +246,7 @@ static void files_and_measures_are_reported_and_can_be_stopped(void **state) {
     }
     support_folder_remove(folder);
     snow_volume_close(w.volume);
+    snow_volume_close(w.grid);
 }
 
 /* In each format that is built. */
