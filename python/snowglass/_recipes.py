@@ -9,6 +9,7 @@ from typing import Any, Mapping, Optional
 
 from . import _checks, _snowglass
 from ._looks import Look, look_of
+from ._options import DEFAULTS
 
 #: Keys of the data, as options of Volume.
 DATA = ("dims", "type", "endian", "spacing", "offset", "time", "channel",
@@ -28,8 +29,8 @@ OVERLAY = ("preset", "colormap", "range", "opacity")
 OTHERS = ("output", "depth", "overwrite", "background", "bits", "frames", "fps",
           "verb", "version", "title", "annotate", "box")
 #: What need not be said; some of it the command line has no words for.
-USUAL = {"azimuth": 0, "elevation": 0, "roll": 0, "perspective": 0, "zoom": 1,
-         "fit": "visible", "threads": 0, "opacity_length": 0}
+USUAL = {"perspective": 0, "opacity_length": 0, **{name: DEFAULTS[name] for name in (
+    "azimuth", "elevation", "roll", "zoom", "fit", "threads")}}
 #: What Volume.slice takes, besides the look.
 SLICE = ("axis", "at", "size", "kernel", "legend", "letters", "threads")
 

@@ -10,15 +10,17 @@ from . import _options
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-def takes(keys: Any) -> Callable[[F], F]:
-    """Of a function with `**options: Unpack[keys]`."""
+def takes(keys: Any, **usual: Any) -> Callable[[F], F]:
+    """Of a function with `**options: Unpack[keys]`, some with other defaults."""
+    defaults = {**_options.DEFAULTS, **usual}
+
     def finish(function: F) -> F:
         signature = inspect.signature(function)
         own = list(signature.parameters.values())[:-1]
         named = {each.name for each in own}
         more = [inspect.Parameter(
             name, inspect.Parameter.KEYWORD_ONLY, annotation=kind.__forward_arg__,
-            default=_options.DEFAULTS.get(name))
+            default=defaults.get(name))
             for name, kind in keys.__annotations__.items() if name not in named]
         function.__signature__ = signature.replace(  # type: ignore[attr-defined]
             parameters=own + more)

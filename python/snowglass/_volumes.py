@@ -560,12 +560,13 @@ class Volume(_snowglass.Volume):
             return f"{quantity} ({unit})"
         return quantity or unit or None
 
-    @takes(Shot)
+    @takes(Shot, fit="volume")
     def project(self, mode: Literal["mip", "minip", "mean", "sum"] = "mip",
                 **given: Unpack[Shot]) -> "numpy.typing.NDArray[Any]":
         """Largest ("mip"), smallest ("minip") or mean values along the rays, or
         their sum times length ("sum"), in data units: float32 of shape (height,
-        width), NaN where a ray meets no voxel.  Options are those of render."""
+        width), NaN where a ray meets no voxel.  Options are those of render, but
+        that the whole volume is in the picture."""
         import numpy
         options = _given(given)
         for name in ("look", *_recipes.LOOKS):

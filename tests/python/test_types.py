@@ -56,6 +56,8 @@ class Types(unittest.TestCase):
         self.assertEqual(names["size"].default, 512)
         turn = inspect.signature(sg.Volume.turntable).parameters
         self.assertEqual((turn["frames"].default, turn["fps"].default), (120, 25))
+        self.assertEqual(inspect.signature(sg.Volume.project).parameters["fit"].default,
+                         "volume")
         with self.assertRaisesRegex(TypeError, "no option 'qualty'; take one of"):
             sg.Volume("phantom:head", dims=(8, 8, 8)).render(qualty="high")
 
