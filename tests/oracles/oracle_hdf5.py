@@ -164,6 +164,146 @@ for order, unit in (("C", 1), ("F", 1e-3)):
         unit * np.array((1.5, 2, 3)), unit * np.array((15.75, 20, 30))),
                   unit="m")
 
+# Components of one value; names and units of records.
+with h5py.File("p.h5", "a") as file:
+    for name, group in (("C/B/x", True), ("C/B/y", False)):
+        file[name] = m if not group else h5py.Empty("f4")
+        if group:
+            del file[name]
+            file.create_group(name).attrs.update(value=3., shape=m.shape)
+        file[name].attrs.update(unitSI=0.5, position=[0., 0, 0])
+    file["C/B"].attrs.update(file["C"].attrs)
+    file["C/B"].attrs["unitDimension"] = [0., 1, -2, -1, 0, 0, 0]
+oracle.expect("p.h5:/C/B/x", np.full(m.shape, 1.5), oracle.affine(
+    (1.5, 2, 3), (15, 20, 30)), dtype=np.float64, unit="m")
+oracle.tells("p.h5:/C/B/x", quantity="B x", value_unit="T")
+oracle.tells("p.h5:/C/B/y", quantity="B y", value_unit="T")
+
+# Modes around an axis: FBPIC's layout, that of z before r, femm's.
+SIDE, LONG = 30, 25
+
+
+def wave(x, y, z):
+    """cos 2a and others, smooth at the axis, and vectors of them."""
+    r2 = x * x + y * y
+    fall = np.exp(-r2 / 300 - (z - 30)**2 / 900)
+    return [(x * x - y * y) * fall, 2 * x * y * fall, x * fall, y * fall,
+            (5 + r2 / 10) * fall]
+
+
+def modes(path, labels=("r", "z"), order="C", kind="f8", position=(.5, 0.),
+          sides=(SIDE, LONG), records=5, step=100):
+    dr, dz = 0.5, 2.
+    place = dict(zip("rz", position))
+    r = ((np.arange(sides[0]) + place["r"]) * dr)[:, None]
+    z = ((np.arange(sides[1]) + place["z"]) * dz + 7)[None]
+    c2, _, c1, _, c0 = (r**0 * v for v in wave(r, 0 * r, z))
+    none = 0 * c0
+    # A vector with x = c0, y = 0: r = c0 cos a, t = -c0 sin a.
+    fields = {"rho": [c0, c1, 2 * c1, 3 * c2, -c2], "B/r": [none, c0, none],
+              "B/t": [none, none, -c0], "B/z": [c0, c1, none], "A/r": [c1]}
+    with h5py.File(path, "w") as file:
+        base = file.create_group(f"data/{step}")
+        base.attrs.update(time=2. + step, timeUnitSI=0.5)
+        for name in ("rho", "B/r", "B/t", "B/z", "A/r", "A/t", "A/z"):
+            name, path = name, f"data/{step}/fields/{name}"
+            whole = np.array((fields.get(name, [none]) + 5 * [none])[:records])
+            flip = (labels[0] == "z") != (order == "F")
+            if flip:
+                whole = whole.transpose(0, 2, 1)
+            if name == "A/t":
+                file.create_group(path).attrs.update(value=0., shape=whole.shape)
+            else:
+                file[path] = whole.astype(kind)
+            file[path].attrs["unitSI"] = 2.
+            file[path].attrs["position"] = [place[c] for c in labels] + \
+                [0.] * (records == 1)
+            mesh = file[path] if name == "rho" else file[path].parent
+            mesh.attrs.update(
+                geometry=np.bytes_("thetaMode"), dataOrder=np.bytes_(order),
+                geometryParameters=np.bytes_("m=1;imag=+"), gridUnitSI=1e-2,
+                axisLabels=np.array(labels, "S1"), timeOffset=0.,
+                gridSpacing=[{"r": dr, "z": dz}[c] for c in labels],
+                gridGlobalOffset=[{"r": 0, "z": 7.}[c] for c in labels],
+                unitDimension=[0., 1, -2, -1, 0, 0, 0])
+
+
+def round_about(path, what, wanted, options=(), each=(1, 1), sides=(SIDE, LONG),
+                position=.5):
+    """Values are the formula's, but for 1 % of their range, and 0 outside."""
+    voxels, matrix = oracle.voxels_of(f"{path}:{what}", options)
+    if voxels is None:
+        return
+    n = int((2 * (sides[0] - 1 + position)) // each[0]) + 1
+    shape = ((sides[1] - 1) // each[1] + 1, n, n)
+    dr = 0.5e-2 * each[0]
+    if voxels.shape != shape or not np.allclose(matrix, np.array((
+            (dr, 0, 0, -dr * (n - 1) / 2), (0, dr, 0, -dr * (n - 1) / 2),
+            (0, 0, 2e-2 * each[1], 7e-2)))):
+        oracle.fail(what, f"{options}: shape {voxels.shape}, matrix {matrix}")
+        return
+    x, y, z = (100 * v for v in oracle.world(voxels, matrix))
+    right = 2 * wanted(*wave(x, y, z))
+    r = np.hypot(x, y)
+    last = (sides[0] - 1 + position) * 0.5
+    right[r > last + 1e-6] = 0
+    near = np.abs(voxels - right)[r > 4 * 0.5].max() / np.ptp(right)
+    whole = np.abs(voxels - right).max() / np.ptp(right)
+    if near > 0.01 or whole > 0.03:
+        oracle.fail(what, f"{options}: differs by {near:.2%}, {whole:.2%}")
+    part, _ = oracle.voxels_of(f"{path}:{what}", [*options, "--crop", "9:21,3:,4:9"])
+    if not np.array_equal(part, voxels[4:9, 3:, 9:21]):
+        oracle.fail(what, "a box has other values than the whole")
+
+
+density = lambda c2, s2, c1, s1, c0: c0 + c1 + 2 * s1 + 3 * c2 - s2
+for way in (dict(), dict(labels=("z", "r")), dict(order="F"), dict(kind="f4"),
+            dict(labels=("z", "r"), order="F"), dict(position=(0., 0.))):
+    modes("r.h5", **way)
+    at = way.get("position", (.5, 0))[0]
+    round_about("r.h5", "/data/100/fields/rho", density, position=at)
+    if "kind" in way:
+        continue
+    for component, part in (("x", lambda c2, s2, c1, s1, c0: c0),
+                            ("z", lambda c2, s2, c1, s1, c0: c0 + c1)):
+        round_about("r.h5", "/data/100/fields/B", part,
+                    ["--component", component], position=at)
+    nothing, _ = oracle.voxels_of("r.h5:/data/100/fields/B/y")
+    if np.abs(nothing).max() > 1e-12:
+        oracle.fail("B/y", "is not 0")
+round_about("r.h5", "/data/100/fields/B/x", lambda c2, s2, c1, s1, c0: c0,
+            position=0)
+oracle.tells("r.h5:/data/100/fields/B", components=3, magnitude=True,
+             quantity="B", value_unit="T", time_value=51., unit="m")
+oracle.tells("r.h5:/data/100/fields/B", ["--component", "y"], quantity="B y")
+modes("r.h5", records=1)
+round_about("r.h5", "/data/100/fields/A/x",
+            lambda c2, s2, c1, s1, c0: c1)
+modes("r.h5", sides=(300, 4100), records=1, kind="f4")
+wide = "note: 1 record of 300 x 4100 nodes on r and z is shown on x, y and z, " \
+    "300 x 300 x 2050 of them: one in 2 along r and in 2 along z"
+oracle.says("coarse", "r.h5:/data/100/fields/rho", wide,
+            "--crop", "145:154,150:152,5:9")
+voxels, matrix = oracle.voxels_of("r.h5:/data/100/fields/rho",
+                                  ["--crop", "145:154,150:152,5:9"])
+x, y, z = (100 * v for v in oracle.world(voxels, matrix))
+if np.abs(voxels - 2 * wave(x, y, z)[4]).max() > 0.05:
+    oracle.fail("coarse", "is not the field")
+for step in (0, 50, 400):
+    modes(f"step{step}.h5", step=step)
+    oracle.tells("step%T.h5:/data/%T/fields/B", ["--time", "last"],
+                 quantity="B", time_value=1. + step / 2)
+with h5py.File("r.h5", "a") as file:
+    del file["data/100/fields/B/t"]
+    file["data/100/fields/rho"].attrs["axisLabels"] = np.array(["x", "z"], "S1")
+oracle.refuse("r.h5:/data/100/fields/B/x", "lacks the component t")
+oracle.refuse("r.h5:/data/100/fields/rho", "other axisLabels than r and z")
+
+with h5py.File("r.h5", "w") as file:
+    file.attrs["openPMD"] = "1.1.0"
+    file["data/100/particles/e/position/x"] = np.zeros(9)
+oracle.refuse("r.h5", "openPMD file without meshes")
+
 # Image data of VTKHDF, at points and cells, one and several steps.
 turn = np.array(((0, -1, 0), (1, 0, 0), (0, 0, 1.)))
 with h5py.File("w.h5", "w") as file:

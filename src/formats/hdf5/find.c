@@ -52,10 +52,41 @@ bool snow_hdf5_describe(hid_t id, hdf5_set *out) {
     bool right = out->type && axes >= 1 && axes <= HDF5_MOST_AXES &&
                  H5Sget_simple_extent_dims(space, out->sizes, NULL) == axes;
     out->axes = axes;
+    out->constant = false;
     out->id = id;
     snow_hdf5_drop(type);
     snow_hdf5_drop(space);
     return right;
+}
+
+/* openPMD: the components of a record may have one value everywhere. */
+static bool describe_constant(hid_t id, hdf5_set *out) {
+    double shape[HDF5_MOST_AXES];
+    const int axes = snow_hdf5_numbers(id, "shape", HDF5_MOST_AXES, shape);
+    if (axes < 1 || snow_hdf5_numbers(id, "value", 1, &out->value) != 1)
+        return false;
+    for (int i = 0; i < axes; i++) {
+        if (!(shape[i] >= 1) || !(shape[i] < 0x1p40))
+            return false;
+        out->sizes[i] = (hsize_t)shape[i];
+    }
+    out->axes = axes;
+    out->type = SNOW_TYPE_FLOAT64;
+    out->constant = true;
+    out->id = id;
+    return true;
+}
+
+bool snow_hdf5_open_values(hid_t file, const char *path, hdf5_set *out) {
+    if (H5Oexists_by_name(file, path, H5P_DEFAULT) <= 0)
+        return false;
+    const hid_t id = H5Oopen(file, path, H5P_DEFAULT);
+    const H5I_type_t kind = id < 0 ? H5I_BADID : H5Iget_type(id);
+    if ((kind == H5I_DATASET && snow_hdf5_describe(id, out)) ||
+        (kind == H5I_GROUP && describe_constant(id, out)))
+        return true;
+    snow_hdf5_drop(id);
+    return false;
 }
 
 /* "4x3x2", x first. */
@@ -144,6 +175,11 @@ static snow_status find_only(snow_context *context, hid_t file, survey *s) {
     }
     if (s->found == 1)
         return SNOW_STATUS_OK;
+    if (!s->found && H5Aexists(file, "openPMD") > 0)
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "is an openPMD file without meshes: particles are no "
+                         "volume; write meshes too, or deposit the particles "
+                         "on a grid");
     if (!s->found)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "has no numeric array with three axes; choose another "
@@ -163,7 +199,8 @@ snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
     if (strlen(asked) + 2 > HDF5_NAME_BYTES)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "--dataset: the path is longer than any in a file");
-    hid_t id = H5Dopen2(file, asked, H5P_DEFAULT);
+    const bool opened = snow_hdf5_open_values(file, asked, out);
+    hid_t id = opened ? out->id : H5Dopen2(file, asked, H5P_DEFAULT);
     if (id < 0) {
         (void)find_only(context, file, &s);
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
@@ -171,7 +208,7 @@ snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
                          asked, *s.list ? "the file has " : "check the path",
                          s.list);
     }
-    if (!snow_hdf5_describe(id, out)) {
+    if (!opened) {
         H5Dclose(id);
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "%.200s is not a numeric array with one to five axes; "

@@ -131,6 +131,11 @@ static snow_status read_region(const hdf5_file *file, const hdf5_set *set,
                                const hsize_t start[HDF5_MOST_AXES],
                                snow_volume *volume) {
     hsize_t first[HDF5_MOST_AXES], count[HDF5_MOST_AXES] = {1, 1, 1, 1, 1};
+    if (set->constant) { /* of type float64 */
+        for (uint64_t i = 0; i < region->all / sizeof(double); i++)
+            ((double *)volume->owned)[i] = set->value;
+        return SNOW_STATUS_OK;
+    }
     memcpy(first, start, sizeof first);
     for (int i = 0; i < 3; i++) {
         int at = set->axes - 1 - roles->space[i];
@@ -174,7 +179,8 @@ static void note_chunks(const hdf5_job *job, const snow_region *region) {
     const int axes = job->set->axes;
     hsize_t chunk[HDF5_MOST_AXES];
     int64_t size[3] = {1, 1, 1};
-    const hid_t plan = H5Dget_create_plist(job->set->id);
+    const hid_t plan =
+        job->set->constant ? -1 : H5Dget_create_plist(job->set->id);
     const bool chunked = plan >= 0 && H5Pget_layout(plan) == H5D_CHUNKED &&
                          H5Pget_chunk(plan, axes, chunk) == axes;
     snow_hdf5_drop(plan);
@@ -227,10 +233,25 @@ static snow_status read_set(snow_context *context, const hdf5_file *file,
                             const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out) {
     hdf5_job job = {.context = context, .file = file, .set = set};
-    SNOW_TRY(snow_hdf5_check_storage(context, set->id));
+    if (!set->constant)
+        SNOW_TRY(snow_hdf5_check_storage(context, set->id));
     snow_status status = read_job(&job, options, info, out);
     snow_cf_release(context, job.axes.scales, HDF5_MOST_AXES);
     return status;
+}
+
+/* The only volume of a file may be of modes around an axis. */
+static snow_status read_found(snow_context *context, const hdf5_file *file,
+                              hdf5_set *set, const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    bool found = false;
+    if (!options->dataset)
+        SNOW_TRY(snow_hdf5_read_theta(context, file, set->path, options, info,
+                                      out, &found));
+    if (found)
+        return SNOW_STATUS_OK;
+    snow_hdf5_trim_imaris(file, set);
+    return read_set(context, file, set, options, info, out);
 }
 
 /* A pattern of names is a series, whose steps are files' own. */
@@ -254,10 +275,14 @@ static snow_status read_step(snow_context *context, const hdf5_file *file,
         own.dataset = series.path;
         own.time = 0;
     }
-    SNOW_TRY(snow_hdf5_find(context, id, own.dataset, &set));
-    snow_hdf5_trim_imaris(file, &set);
-    snow_status status = read_set(context, file, &set, &own, info, out);
-    H5Dclose(set.id);
+    bool found;
+    snow_status status = snow_hdf5_read_theta(context, file, own.dataset, &own,
+                                              info, out, &found);
+    if (!found && status == SNOW_STATUS_OK) {
+        SNOW_TRY(snow_hdf5_find(context, id, own.dataset, &set));
+        status = read_found(context, file, &set, &own, info, out);
+        snow_hdf5_drop(set.id);
+    }
     if (status != SNOW_STATUS_OK || !series.given)
         return status;
     info->times = series.count;

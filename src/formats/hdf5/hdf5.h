@@ -8,6 +8,7 @@
  *   meaning.c attributes -> quantity, unit, time, conversion of values
  *   imaris.c  Imaris' own attributes -> sizes, geometry
  *   vtkhdf.c  VTK's own attributes -> geometry, time
+ *   theta.c   modes around an axis -> x, y and z
  *   blocks.h  blocks of refinement -> one grid
  *   strangers.c  files of codes that are not read -> what converts them
  *   filters.c the stored bytes of a chunk -> its elements
@@ -47,6 +48,8 @@ typedef struct hdf5_set {
     int axes;
     hsize_t sizes[HDF5_MOST_AXES]; /* the last one fastest */
     snow_type type;
+    bool constant; /* openPMD: a group with a value and a shape; id is its */
+    double value;
 } hdf5_set;
 
 /* Opens a source as an HDF5 file.  libhdf5 prints nothing until it is closed,
@@ -81,6 +84,10 @@ snow_status snow_hdf5_visit(snow_context *context, hid_t file,
  * array. */
 bool snow_hdf5_describe(hid_t id, hdf5_set *out);
 
+/* Opens a data set, or a group that stands for one of a single value; false if
+ * it is none, or not of numbers. */
+bool snow_hdf5_open_values(hid_t file, const char *path, hdf5_set *out);
+
 /* Opens the group `levels` above the data set; below 0: there is none. */
 hid_t snow_hdf5_above(const hdf5_file *file, const hdf5_set *set, int levels);
 
@@ -96,6 +103,15 @@ snow_status snow_hdf5_refuse_strangers(snow_context *context,
  * (there are several; a wrong name). */
 snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
                            hdf5_set *out);
+
+/* Reads a record of modes around an axis (openPMD, thetaMode), if the path
+ * names one, a component of one, or its x or y.  Errors: SNOW_STATUS_BAD_INPUT,
+ * SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY. */
+snow_status snow_hdf5_read_theta(snow_context *context, const hdf5_file *file,
+                                 const char *path,
+                                 const snow_volume_options *options,
+                                 snow_volume_info *info, snow_volume **out,
+                                 bool *found);
 
 /* The steps that a pattern of names stands for: /step_%04d/rho,
  * /data/%T/fields/rho. */
@@ -174,6 +190,13 @@ void snow_hdf5_attributes(const hdf5_file *file, hid_t object,
 cf_values snow_hdf5_values(snow_context *context, const hdf5_file *file,
                            const hdf5_set *set, const hdf5_axes *axes,
                            const cf_attributes *says);
+
+/* The factor to SI (openPMD), 1 without one, and the unit then; the time of the
+ * nearest group above. */
+double snow_hdf5_unit(const hdf5_file *file, const hdf5_set *set,
+                      snow_volume_info *info);
+void snow_hdf5_time(const hdf5_file *file, const hdf5_set *set,
+                    snow_volume_info *info);
 
 /* Sets what the values are, and the time of the step; values that have a factor
  * to SI (openPMD) are scaled by it.  Errors: those of snow_hdf5_read_box. */

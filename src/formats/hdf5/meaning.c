@@ -6,6 +6,7 @@
  *     unitSI, unitDimension        openPMD, of a component and its record
  *     time, timeUnitSI             openPMD, of the iteration's group; "time"
  *                                  alone of any group above the data set */
+#include "formats/array.h"
 #include "formats/hdf5/hdf5.h"
 
 #if SNOW_HAVE_HDF5
@@ -120,11 +121,43 @@ hid_t snow_hdf5_above(const hdf5_file *file, const hdf5_set *set, int levels) {
     return H5Oopen(snow_hdf5_id(file), path, H5P_DEFAULT);
 }
 
-/* "kg m^-3" of powers of the seven base units (openPMD, unitDimension). */
+/* Units with names of their own, by the powers of m, kg, s and A. */
+static const char *named_unit(const double powers[7]) {
+    static const struct {
+        const char *name;
+        signed char powers[4];
+    } units[] = {
+        {"T", {0, 1, -2, -1}},    {"V/m", {1, 1, -3, -1}},
+        {"V", {2, 1, -3, -1}},    {"C/m^3", {-3, 0, 1, 1}},
+        {"A/m^2", {-2, 0, 0, 1}}, {"C", {0, 0, 1, 1}},
+        {"N", {1, 1, -2, 0}},     {"J", {2, 1, -2, 0}},
+        {"Pa", {-1, 1, -2, 0}},   {"W", {2, 1, -3, 0}},
+        {"W/m^2", {0, 1, -3, 0}}, {"J/m^3", {-1, 1, -2, 0}},
+        {"m/s", {1, 0, -1, 0}},
+    };
+    if (powers[4] != 0 || powers[5] != 0 || powers[6] != 0)
+        return NULL;
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        bool same = true;
+        for (int p = 0; p < 4; p++)
+            same = same && powers[p] == units[i].powers[p];
+        if (same)
+            return units[i].name;
+    }
+    return NULL;
+}
+
+/* "T", or "kg m^-3" of powers of the seven base units (openPMD,
+ * unitDimension). */
 static void spell_unit(const double powers[7], char *out, size_t capacity) {
     static const char *const units[] = {"m", "kg", "s", "A", "K", "mol", "cd"};
+    const char *name = named_unit(powers);
     size_t used = 0;
     *out = 0;
+    if (name) {
+        snprintf(out, capacity, "%s", name);
+        return;
+    }
     for (int i = 0; i < 14; i++) { /* what is divided by comes last */
         const double power = powers[i % 7];
         if (power == 0 || (power < 0) != (i >= 7) || used + 12 > capacity)
@@ -137,28 +170,44 @@ static void spell_unit(const double powers[7], char *out, size_t capacity) {
     }
 }
 
-/* Values get the factor to SI, so that their unit can be named. */
-static void take_si(const hdf5_file *file, const hdf5_set *set,
-                    snow_volume_info *info, cf_values *values) {
+double snow_hdf5_unit(const hdf5_file *file, const hdf5_set *set,
+                      snow_volume_info *info) {
     double factor, powers[7];
     if (snow_hdf5_numbers(set->id, "unitSI", 1, &factor) != 1 ||
         !isfinite(factor) || factor == 0)
-        return;
+        return 1;
     bool given = snow_hdf5_numbers(set->id, "unitDimension", 7, powers) == 7;
     hid_t record = given ? -1 : snow_hdf5_above(file, set, 1);
     if (record >= 0) {
         given = snow_hdf5_numbers(record, "unitDimension", 7, powers) == 7;
         H5Oclose(record);
     }
-    values->scale *= factor;
-    values->offset *= factor;
     if (given && !*info->value_unit)
         spell_unit(powers, info->value_unit, sizeof info->value_unit);
+    return factor;
 }
 
-/* The time of the nearest group above that has one. */
-static void take_time(const hdf5_file *file, const hdf5_set *set,
-                      snow_volume_info *info) {
+/* A component of a record of openPMD is called by both: "B x". */
+static void name_component(const hdf5_file *file, const hdf5_set *set,
+                           snow_volume_info *info) {
+    char path[HDF5_NAME_BYTES];
+    const hid_t record = snow_hdf5_above(file, set, 1);
+    const bool named = record >= 0 && H5Aexists(set->id, "unitSI") > 0 &&
+                       H5Aexists(set->id, "axisLabels") <= 0 &&
+                       H5Aexists(record, "axisLabels") > 0;
+    snow_hdf5_drop(record);
+    if (!named)
+        return;
+    memcpy(path, set->path, sizeof path);
+    char *slash = strrchr(path, '/');
+    *slash = ' ';
+    char *above = strrchr(path, '/');
+    snow_copy_name(above ? above + 1 : path, info->quantity,
+                   sizeof info->quantity);
+}
+
+void snow_hdf5_time(const hdf5_file *file, const hdf5_set *set,
+                    snow_volume_info *info) {
     for (int level = 0; level < 6 && isnan(info->time_value); level++) {
         double time, factor;
         hid_t group = snow_hdf5_above(file, set, level);
@@ -188,9 +237,13 @@ snow_status snow_hdf5_mean(snow_context *context, const hdf5_file *file,
     snow_cf_name(slash ? slash + 1 : set->path, says, info);
     if (axes->roles.time >= 0)
         snow_cf_time(&axes->scales[axes->roles.time], info);
-    take_si(file, set, info, values);
+    name_component(file, set, info);
+    /* Values get the factor to SI, so that their unit can be named. */
+    const double factor = snow_hdf5_unit(file, set, info);
+    values->scale *= factor;
+    values->offset *= factor;
     SNOW_TRY(snow_hdf5_time_image(context, file, set, info));
-    take_time(file, set, info);
+    snow_hdf5_time(file, set, info);
     return SNOW_STATUS_OK;
 }
 

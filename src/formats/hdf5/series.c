@@ -69,12 +69,17 @@ typedef struct numbers {
     snow_status status;
 } numbers;
 
+/* A group of openPMD that is shown as one: its components make a vector. */
+static bool is_record(hid_t file, const char *name) {
+    return H5Aexists_by_name(file, name, "geometry", H5P_DEFAULT) > 0;
+}
+
 static herr_t look(hid_t file, const char *name, const H5O_info_t *info,
                    void *user) {
     numbers *n = user;
     int64_t number;
-    (void)file;
-    if (info->type != H5O_TYPE_DATASET || !fits(n->pattern, name, &number))
+    if (!fits(n->pattern, name, &number) ||
+        (info->type != H5O_TYPE_DATASET && !is_record(file, name)))
         return 0;
     if (n->path && number == n->wanted) {
         snprintf(n->path, HDF5_NAME_BYTES, "/%.500s", name);

@@ -132,6 +132,14 @@ with h5py.File("run.h5", "w") as run, open("run.xmf", "w") as text:
         with h5py.File(f"data_{step * 100}.h5", "w") as one:
             one[f"data/{step * 100}/fields/rho"] = a + step
     text.write("</Grid></Domain></Xdmf>")
+# Modes around an axis, of a vector.
+for step in 0, 100:
+    with h5py.File(f"wake_{step}.h5", "w") as one:
+        for name in "rtz":
+            one[f"data/{step}/fields/E/{name}"] = np.ones((3, 8, 9))
+        one[f"data/{step}/fields/E"].attrs.update(
+            geometry=np.bytes_("thetaMode"), gridSpacing=[1., 1.],
+            axisLabels=np.array(["r", "z"], "S1"))
 # Eight blocks of one level, as FLASH and Athena++ write them.
 places = np.array(list(np.ndindex(2, 2, 2)))
 ends = np.stack([places, places + 1], -1) / 2
