@@ -172,6 +172,10 @@ static snow_status read_source(snow_source *source,
     if (!size)
         return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
                          "is empty; get or write the file again");
+    const char *mesh = snow_mesh_in_netcdf(bytes, size);
+    if (mesh && !options->dataset)
+        return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
+                         "%s", mesh);
     const snow_format *format = snow_format_of_bytes(bytes, size);
     if (!format && !options->dims[0])
         format = snow_format_of_name(snow_source_name(source));
@@ -234,6 +238,7 @@ static snow_status read_folder(snow_context *context, const char *path,
     static const snow_format slices = {
         .name = "slices", .channels = true, .series = true};
     const bool zarr = snow_zarr_is(context, path);
+    SNOW_TRY(snow_refuse_folder(context, path));
     SNOW_TRY(
         check_choice(context, zarr ? &snow_format_zarr : &slices, options));
     return zarr ? snow_zarr_read_folder(context, path, options, info, out)

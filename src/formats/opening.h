@@ -10,6 +10,11 @@
  * unknown file.  `bytes` are its first ones. */
 const char *snow_stranger(const unsigned char *bytes, size_t size);
 
+/* The same for an unstructured grid in a NetCDF file, which would pass for its
+ * arrays; and the refusal of a folder that is one file of another program. */
+const char *snow_mesh_in_netcdf(const unsigned char *bytes, size_t size);
+snow_status snow_refuse_folder(snow_context *context, const char *path);
+
 /* Makes a volume from the files that a folder or a pattern names, in their
  * order, one slice each; like a format's `read`.  Messages need not begin with
  * the path. Errors: SNOW_STATUS_BAD_INPUT (no files, files that differ or are

@@ -94,6 +94,14 @@ static void unsupported_formats_are_known(void **state) {
         {0, "BZh9", "is compressed by bzip2"},
         {0, "MATLAB 5.0 MAT-file", "save it with -v7.3"},
         {0, "RIFF", "is a RIFF file"},
+        {0, "GRIB", "cdo -f nc4 -t ecmwf setgridtype,regular"},
+        {0, "CheckPointVersion_1.0\n3", "is a checkpoint of AMReX"},
+        {0, "Checkpoint version: 1\n", "is a checkpoint of AMReX"},
+        {0, "InitialCycleNumber  = 0\n", "is a file of parameters of Enzo"},
+        {0, "\nGrid = 1\nTask = 0\n", "is a file of the hierarchy of Enzo"},
+        {0, "$MeshFormat\n4.1 0 8\n", "is a mesh of Gmsh"},
+        {0, "#!TDV112", "is a file of Tecplot"},
+        {0, "FoamFile\n{", "is a file of OpenFOAM"},
     };
     for (size_t i = 0; i < sizeof unsupported / sizeof *unsupported; i++) {
         char bytes[512] = "";

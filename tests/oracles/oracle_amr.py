@@ -675,6 +675,7 @@ for names, part in ((["Parameters and Global Attributes/All Parameters",
                     (["Chombo_global/x", "level_0/data:datatype=0"], "Chombo"),
                     (["Grid00000001/Density"], "Enzo"),
                     (["PartType0/Coordinates", "Header/x"], "particles"),
+                    (["CGNSLibraryVersion"], "CGNS"), ([".silo/x"], "Silo"),
                     (["coordx", "eb_status", "connect1"], "Exodus")):
     with h5py.File("other.h5", "w") as file:
         for name in names:

@@ -347,7 +347,10 @@ snow_status snow_plotfile_header(snow_context *context, const char *path,
             snow_source_close(source);
         }
     }
-    if (status == SNOW_STATUS_OK && probe(bytes, got))
+    /* The Header of a checkpoint is refused as a file. */
+    const bool other = got > 10 && (!memcmp(bytes, "CheckPoint", 10) ||
+                                    !memcmp(bytes, "Checkpoint", 10));
+    if (status == SNOW_STATUS_OK && (other || probe(bytes, got)))
         *out = name;
     else
         snow_release(context, name);

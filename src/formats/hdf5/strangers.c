@@ -27,6 +27,13 @@ static const struct {
     {"PartType1", "Header",
      "has particles (Gadget, Arepo, Swift), which are no volume; deposit them "
      "on a grid, such as with yt (arbitrary_grid), and save it as .npy"},
+    {"CGNSLibraryVersion", NULL,
+     "is a CGNS file; resample it to image data with ParaView (Resample To "
+     "Image) and write .vti"},
+    {".silo", NULL,
+     "is a Silo file; resample it to an even grid with VisIt, and write .vtk "
+     "or "
+     ".vti"},
     {"coordx", "eb_status",
      "is an Exodus file, of an unstructured grid; resample it to image data "
      "with ParaView (Resample To Image) and write .vti"},

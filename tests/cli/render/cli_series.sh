@@ -129,4 +129,9 @@ fi
 mkdir plt00000
 echo HyperCLaw-V1.1 >plt00000/Header
 refused 3 "a plotfile that is cut off" 'ends before a number of components' "$TOOL" info plt00000
+mkdir chk00000 run.bp
+echo CheckPointVersion_1.0 >chk00000/Header
+touch run.bp/md.idx run.bp/data.0
+refused 3 "a checkpoint" 'is a checkpoint of AMReX' "$TOOL" info chk00000
+refused 3 "a folder of ADIOS2" 'run.bp: is a file of ADIOS2 .* openpmd-pipe' "$TOOL" info run.bp
 finish
