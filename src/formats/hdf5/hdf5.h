@@ -10,7 +10,7 @@
  *   vtkhdf.c  VTK's own attributes -> geometry, time
  *   theta.c   modes around an axis -> x, y and z
  *   blocks.h  blocks of refinement -> one grid
- *   strangers.c  files of codes that are not read -> what converts them
+ *   foreign.c files of codes that are not read -> what converts them
  *   filters.c the stored bytes of a chunk -> its elements
  *   chunks.c  chunks, or what else is stored -> a box of elements
  *   hdf5.c    a box of the data set -> the volume */

@@ -1,4 +1,4 @@
-/* formats/hdf5/strangers.c - files of codes whose grids are not read, and what
+/* formats/hdf5/foreign.c - files of codes whose grids are not read, and what
  * makes a volume of them.  They would pass for arrays that are none. */
 #include "formats/hdf5/hdf5.h"
 
