@@ -2,6 +2,7 @@
  * levels, which are shown as those of formats/amr are.
  *
  *   blocks.c       leaves of a tree, of one size in cells, that fill the domain
+ *   tables.c       the numbers that say where they are
  *   flash.c        those of FLASH
  *   athena.c       those of Athena++
  *   overlapping.c  boxes of VTKHDF, of any size, the finer ones over others */

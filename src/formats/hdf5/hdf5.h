@@ -11,6 +11,7 @@
  *   theta.c   modes around an axis -> x, y and z
  *   blocks.h  blocks of refinement -> one grid
  *   foreign.c files of codes that are not read -> what converts them
+ *   storage.c whether its values can be read
  *   filters.c the stored bytes of a chunk -> its elements
  *   chunks.c  chunks, or what else is stored -> a box of elements
  *   hdf5.c    a box of the data set -> the volume */
