@@ -469,6 +469,42 @@ os.rmdir("q.zarr/0.0.0")
 os.mkfifo("q.zarr/0.0.0")
 oracle.refuse("q.zarr", "not a regular file")
 
+# ERA5 as xarray writes it: several variables, packed, in time steps and levels,
+# chunked along either, their metadata also in one file.
+LEVELS = np.array([1000, 850, 500, 200])
+COORDINATES = {
+    "time": (np.arange(4) * 6, {"units": "hours since 2020-01-01"}),
+    "level": (LEVELS, {"units": "millibars", "long_name": "pressure_level"}),
+    "latitude": (np.linspace(50, -50, 11), {"units": "degrees_north"}),
+    "longitude": (np.arange(20) * 18.0, {"units": "degrees_east"})}
+winds = {}
+for chunks, whole in (((1, 4, 11, 20), True), ((4, 1, 6, 7), False)):
+    group = zarr.open_group("era.zarr", "w")
+    for name, (at, says) in COORDINATES.items():
+        group.create_dataset(name, data=at).attrs.update(
+            says, _ARRAY_DIMENSIONS=[name])
+    for seed, name in enumerate("uv"):
+        winds[name] = a = oracle.sample("<i2", (4, 4, 11, 20), seed)
+        a[:, :, 0, :3] = -32767
+        group.create_dataset(name, data=a, chunks=chunks,
+                             fill_value=-32767).attrs.update(
+            _ARRAY_DIMENSIONS=[*COORDINATES], scale_factor=0.001, add_offset=5.0,
+            units="m s**-1")
+    if whole:
+        zarr.consolidate_metadata("era.zarr")
+    oracle.refuse("era.zarr", "holds 2 volumes; choose one", status=2)
+    for name, time in itertools.product("uv", (0, 3)):
+        options = ["--dataset", name, "--time", time]
+        found, place = oracle.voxels_of("era.zarr", options)
+        stored = winds[name][time].astype("f8")
+        wanted = np.where(stored == -32767, np.nan, stored * 0.001 + 5)
+        heights = -(place[2, 2] * np.arange(len(found)) + place[2, 3])
+        at = [np.abs(heights - level).argmin() for level in LEVELS]
+        if not np.allclose(found[at], wanted, rtol=0, atol=1e-12, equal_nan=True):
+            oracle.fail("era.zarr", f"{chunks} {options}: other values")
+        oracle.tells("era.zarr", options, time_value=6.0 * time, times=4,
+                     axis_units=["degrees", "degrees", "millibars"])
+
 # Real ones.
 for name in ("mni152.ome.zarr", "mni152_axial.ome.zarr"):
     path = oracle.data(f"formats/zarr/{name}")

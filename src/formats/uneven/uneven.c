@@ -129,7 +129,7 @@ static void note_axis(snow_context *context, const snow_uneven *grid, int axis,
     snow_notify(context,
                 "coordinates along %c are not evenly spaced (steps of %g to "
                 "%g); their %lld voxels are resampled to %lld, %g apart, each "
-                "at the nearest, at most %.2g away%s",
+                "at the nearest, at most %.4g away%s",
                 "xyz"[axis], least, most, (long long)grid -> count[axis],
                 (long long)grid -> even[axis], fabs(step), shift, shared);
     snprintf(info->storage + used, sizeof info->storage - used,
