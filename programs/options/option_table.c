@@ -212,10 +212,11 @@ const option_row option_table[] = {
      "those that a picture mixes, each with colour, range and opacity, such as "
      "0:magenta,GFP:#00ff00:100..2000:0.5 (default: what the file shows, else "
      "0)"},
-    {"component", 0, "x|N|NAME|magnitude", TOPIC_DATA, INPUT, read_component,
+    {"component", 0, "x|N|NAME|U,V,W|magnitude", TOPIC_DATA, INPUT, read_component,
      FIELD(component), 0, 0, "component of voxels that are vectors: x, y, z, w, a number from 0, or "
      "magnitude (default: magnitude of 2 or 3 floats, else the first); of "
-     "AMReX a number or a name"},
+     "AMReX a number or a name; U,V,W: the magnitude of several, which may be data "
+     "sets of one size"},
     {"crop", 0, "X0:X1,Y0:Y1,Z0:Z1", TOPIC_DATA, INPUT, read_crop, FIELD(crop),
      0, 0, "read only this box of the volume: first voxel and one past the last; an "
      "omitted number means the end of the volume"},

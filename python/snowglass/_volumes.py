@@ -51,7 +51,7 @@ class Volume(_snowglass.Volume):
                 array that changes between pictures.
 
     For files: memory (the most bytes that the library may hold), dims, type ("uint8", "int16", ...), endian, offset (raw data),
-    time, channel (below), component ("x", "magnitude", or a number from 0), crop
+    time, channel (below), component ("x", "magnitude", a number from 0, or names, "u,v,w", whose magnitude is taken), crop
     ((x0, x1), (y0, y1), (z0, z1)), dataset, series, allow_gaps (a DICOM folder,
     an OME-TIFF or a stack of ImageJ in which slices are missing is opened), suv (unit of PET in DICOM: "bw", "lbm",
     "bsa", or "none", as stored), levels (of refinement that are read,
@@ -122,6 +122,8 @@ class Volume(_snowglass.Volume):
             fields["spacing"] = (spacing,) * 3
         if fields.get("z_scale") == "auto":
             del fields["z_scale"]
+        if isinstance(fields.get("component"), (tuple, list)):
+            fields["component"] = ",".join(map(str, fields["component"]))
         for name in ("mask", "label_table", "dataset", "series", "labels",
                      "component", "suv"):
             if fields.get(name) is not None:

@@ -305,25 +305,145 @@ static snow_status keep_first(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
+/* --- "u,v,w" ---------------------------------------------------------------
+ */
+
+/* One of the names, as a component that has it or as a data set. */
+static snow_volume_options options_of(const snow_volume_options *options,
+                                      const char *name, bool set) {
+    snow_volume_options own = *options;
+    own.component = set ? NULL : name;
+    own.dataset = set ? name : options->dataset;
+    return own;
+}
+
+/* Whether the names are those of data sets: where the first one is no
+ * component. */
+static snow_status find_kind(snow_context *context, snow_component_fn *read,
+                             void *user, const snow_volume_options *options,
+                             const char *name, bool *set) {
+    static const char alone[] = "have a single data set";
+    char message[sizeof context->message];
+    snow_warning_fn *warning = context->warning;
+    snow_volume_info info;
+    context->warning = NULL;
+    *set = false;
+    snow_volume_options own = options_of(options, name, false);
+    snow_status status = read(user, &own, &info, NULL);
+    if (status != SNOW_STATUS_OK && !options->dataset) {
+        memcpy(message, context->message, sizeof message);
+        *set = true;
+        own = options_of(options, name, true);
+        status = read(user, &own, &info, NULL);
+        if (status != SNOW_STATUS_OK && strstr(context->message, alone))
+            memcpy(context->message, message, sizeof message);
+    }
+    context->warning = warning;
+    return status;
+}
+
+/* Adds the volume of a name to the lengths so far, of which there are none at
+ * number 0.  `sum` is NULL where only the sizes are checked. */
+static snow_status add_named(snow_context *context, snow_component_fn *read,
+                             void *user, const snow_volume_options *options,
+                             int64_t number, snow_volume_info *info,
+                             snow_volume **sum) {
+    snow_volume_info own;
+    snow_volume *next = NULL;
+    SNOW_TRY(snow_components_read(context, read, user, false, options, &own,
+                                  sum ? &next : NULL));
+    snow_status status = SNOW_STATUS_OK;
+    if (!number)
+        *info = own;
+    else if (memcmp(own.dims, info->dims, sizeof own.dims) != 0)
+        status = snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                           "--component: its volumes have different sizes; "
+                           "give some of one size");
+    if (sum && !number) {
+        *sum = next;
+        return begin_lengths(context, sum);
+    }
+    if (sum && status == SNOW_STATUS_OK)
+        add_component(next, false, *sum);
+    snow_volume_close(next);
+    return status;
+}
+
+/* The magnitude of volumes that are the components of one vector.  Warnings of
+ * the first hold for all. */
+static snow_status read_list(snow_context *context, snow_component_fn *read,
+                             void *user, const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    char name[256];
+    const char *at = options->component;
+    snow_warning_fn *warning = context->warning;
+    snow_status status = SNOW_STATUS_OK;
+    bool set = false;
+    int64_t count = 0;
+    for (; at && status == SNOW_STATUS_OK; count++) {
+        const size_t length = strcspn(at, ",");
+        snprintf(name, sizeof name, "%.*s",
+                 (int)(length < sizeof name ? length : 0), at);
+        at = at[length] ? at + length + 1 : NULL;
+        if (!*name)
+            status = snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                               "--component %.200s: give names with commas "
+                               "between them, as in u,v,w",
+                               options->component);
+        else if (!count)
+            status = find_kind(context, read, user, options, name, &set);
+        const snow_volume_options own = options_of(options, name, set);
+        if (status == SNOW_STATUS_OK)
+            status = add_named(context, read, user, &own, count, info, out);
+        context->warning = NULL;
+    }
+    context->warning = warning;
+    if (status != SNOW_STATUS_OK)
+        return status;
+    describe(info);
+    info->magnitude = true;
+    info->components = count;
+    info->description[0] = 0;
+    snprintf(info->quantity, sizeof info->quantity, "%.63s",
+             options->component);
+    return SNOW_STATUS_OK;
+}
+
+/* Reads the volume that the options ask for, and its other components. */
+static snow_status read_vector(snow_context *context, snow_component_fn *read,
+                               void *user, bool once,
+                               const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **volume) {
+    SNOW_TRY(read(user, options, info, volume));
+    if (info->magnitude && once)
+        SNOW_TRY(keep_first(context, options, info));
+    if (!info->magnitude)
+        return SNOW_STATUS_OK;
+    if (!options->component && !options->each_time)
+        snow_notify(context,
+                    "the magnitude of the %lld components is used; "
+                    "--component N selects one (from 0, or x, y, z)",
+                    (long long)info->components);
+    if (volume)
+        SNOW_TRY(
+            add_others(context, read, user, options, info->components, volume));
+    describe(info);
+    return SNOW_STATUS_OK;
+}
+
 snow_status snow_components_read(snow_context *context, snow_component_fn *read,
                                  void *user, bool once,
                                  const snow_volume_options *options,
                                  snow_volume_info *info, snow_volume **out) {
-    snow_volume *volume = NULL;
-    snow_status status = read(user, options, info, out ? &volume : NULL);
-    if (status == SNOW_STATUS_OK && info->magnitude && once)
-        status = keep_first(context, options, info);
-    if (status == SNOW_STATUS_OK && info->magnitude) {
-        if (!options->component && !options->each_time)
-            snow_notify(context,
-                        "the magnitude of the %lld components is used; "
-                        "--component N selects one (from 0, or x, y, z)",
-                        (long long)info->components);
-        if (out)
-            status = add_others(context, read, user, options, info->components,
-                                &volume);
-        describe(info);
-    }
+    snow_volume *volume = NULL, **wanted = out ? &volume : NULL;
+    const bool list = options->component && strchr(options->component, ',');
+    snow_status status =
+        list && once ? snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                                 "--component %.200s: the input is read once "
+                                 "for each of them; write it to a file",
+                                 options->component)
+        : list       ? read_list(context, read, user, options, info, wanted)
+               : read_vector(context, read, user, once, options, info, wanted);
     if (status == SNOW_STATUS_OK && volume)
         volume->info = *info;
     return snow_volume_give(status, volume, out);

@@ -127,6 +127,28 @@ for form in FORMATS:
     oracle.expect("t.nc", oracle.magnitude(np.moveaxis(a[:, 3], 0, -1)),
                   options=["--dataset", "b", "--time", 3], name=form)
 
+# Components that are variables of their own: missing where any is.
+parts = [oracle.sample(kind, (2, 6, 7, 8), n) for n, kind in
+         enumerate(("f4", "f4", "f8"))]
+parts[1][0, 1, 2, 3] = np.nan
+lengths = oracle.magnitude(np.stack([part.astype("f4") for part in parts], -1))
+for form in ("NETCDF3_CLASSIC", "NETCDF4"):
+    write("t.nc", form, {"time": 2, "z": 6, "y": 7, "x": 8},
+          *((name, part.dtype.str[1:], ("time", *ZYX), part)
+            for name, part in zip("uvw", parts)),
+          ("flat", "f4", ("y", "x"), parts[0][0, 0]))
+    for time in (0, 1):
+        options = ["--component", "u,v,w", "--time", time]
+        found, _ = oracle.voxels_of("t.nc", options)
+        oracle.checked += 1
+        if found is None or not np.allclose(found, lengths[time], rtol=1e-6,
+                                            equal_nan=True):
+            oracle.fail(form, f"{options}: other lengths")
+        oracle.tells("t.nc", options, components=3, magnitude=True, quantity="u,v,w")
+    for options, part in ((["u,v,no"], "no such"), (["u,,v"], "with commas"),
+                          (["u,flat"], "different sizes"), (["no,v"], "no such")):
+        oracle.refuse("t.nc", part, ["--component", *options], 2)
+
 # WRF: a time without coordinates, but with a variable of dates along it.
 for form in ("NETCDF4", "NETCDF3_64BIT_OFFSET"):
     write("t.nc", form, {"Time": None, "z": 6, "y": 7, "x": 8},

@@ -94,10 +94,12 @@ Spacing="{words(STEP)}"><PPointData Scalars="rho"/>
 check("q.pvti")
 
 
-def blocks(path, *extents):
+def blocks(path, *extents, others=()):
     parts = vtk.vtkMultiBlockDataSet()
     for i, extent in enumerate(extents):
         parts.SetBlock(i, image(extent))
+    for other in others:
+        parts.SetBlock(parts.GetNumberOfBlocks(), other)
     writer = vtk.vtkXMLMultiBlockDataWriter()
     writer.SetFileName(path)
     writer.SetInputData(parts)
@@ -106,6 +108,11 @@ def blocks(path, *extents):
 
 blocks("m.vtm", LEFT, RIGHT)
 check("m.vtm")
+sphere = vtk.vtkSphereSource()
+sphere.Update()
+blocks("o.vtm", WHOLE, others=[sphere.GetOutput()])
+check("o.vtm")
+oracle.says("o.vtm", "o.vtm", "1 of 2 files are surfaces")
 blocks("g.vtm", (0, 3, 0, 9, 0, 7), (6, 11, 0, 9, 0, 7))
 voxels, matrix = oracle.voxels_of("g.vtm")
 if np.isnan(voxels).sum() != 2 * 10 * 8 or not np.isnan(voxels[0, 0, 4:6]).all():
@@ -204,6 +211,93 @@ oracle.tells("x.xmf", ["--time", 1, "--dataset", "cell"], dims=[11, 9, 7],
 oracle.refuse("x.xmf", "the file has rho, cell", ["--dataset", "no"], 2)
 put("v.xmf", START + grid(item("v", "x.h5:/v")) + END)
 check("v.xmf", ["--component", "x"])
+# A path without a slash; boxes of arrays of three to five axes; vectors that are
+# joined of several arrays.
+random = np.random.default_rng(7)
+with h5py.File("y.h5", "w") as file:
+    whole = [random.random((8, 10, 12)) for _ in range(3)]
+    for name, part in zip("abc", whole):
+        file[name] = part
+    file["four"] = np.stack(whole)
+    five = file["five"] = random.random((2, 3, 7, 9, 4))
+    file["box"] = np.pad(whole[1], ((1, 2), (3, 0), (0, 5)))
+    file["edges"] = np.add.outer(4.0 * np.arange(8), np.arange(5))
+    blocks_of = file["blocks"] = random.random((2, 8, 5, 5, 4))
+
+
+def slab(what, *rows):
+    return (f'<DataItem ItemType="HyperSlab"><DataItem Format="XML">'
+            f'{" ".join(words(row) for row in rows)}</DataItem><DataItem '
+            f'Format="HDF">y.h5:{what}</DataItem></DataItem>')
+
+
+def values_are(wanted, *options):
+    oracle.checked += 1
+    found, _ = oracle.voxels_of("y.xmf", options)
+    if found is None or not np.array_equal(found, wanted):
+        oracle.fail("y.xmf", f"other values, {options}")
+
+
+def hold(*items):
+    put("y.xmf", START + grid("".join(
+        f'<Attribute Name="v{n}" Center="Node">{each}</Attribute>'
+        for n, each in enumerate(items))) + END)
+
+
+ONE = (1,) * 5
+SIZE = (8, 10, 12)
+hold('<DataItem Format="HDF">\n y.h5:a\n</DataItem>',
+     slab("/four", (2, 0, 0, 0), ONE[:4], (1, *SIZE)),
+     slab("box", (1, 3, 0), ONE[:3], SIZE))
+values_are(whole[0])
+values_are(whole[2], "--dataset", "v1")
+values_are(whole[1], "--dataset", "v2")
+values_are(whole[1][2:5, 1:9, 4:], "--dataset", "v2", "--crop", "4:,1:9,2:5")
+hold('<DataItem ItemType="Function" Function=" join($0, $1, $2)">' +
+     "".join(f'<DataItem Format="HDF">y.h5:/{name}</DataItem>' for name in "abc") +
+     "</DataItem>")
+values_are(oracle.magnitude(np.stack(whole, -1)))
+for name, part in zip("xyz", whole):
+    values_are(part, "--component", name)
+for bad, part in ((slab("/four", (0,) * 4, ONE[:4], (2, *SIZE)), "not one box"),
+                  (slab("/a", (0,) * 3, (1, 1, 2), SIZE), "not one box"),
+                  (slab("/a", (0, 0, 4), ONE[:3], SIZE), "does not lie in y.h5"),
+                  (slab("/a", (0, 0), ONE[:2]), "three numbers for each")):
+    hold(bad)
+    oracle.refuse("y.xmf", part)
+
+# Athena++: a grid for each block, in a collection in space, which is the default;
+# edges of cells and values by boxes of arrays; four cells are no components.
+def block(n, edges):
+    corner = (4 * (n & 1), 5 * (n >> 1 & 1), 5 * (n >> 2))
+    numbers = "".join('<DataItem Format="XML">' + words(range(at, at + size + 1)) +
+                      "</DataItem>" for at, size in zip(corner, (4, 5, 5)))
+    if edges:
+        numbers = slab("/edges", (n & 1, 0), (1, 1), (1, 5)) + \
+            numbers[numbers.index("</DataItem>") + 11:]
+    return ('<Grid><Topology TopologyType="3DRectMesh" NumberOfElements="6 6 5"/>'
+            f'<Geometry GeometryType="VXVYVZ">{numbers}</Geometry><Attribute '
+            'Name="rho" Center="Cell">' +
+            slab("/blocks", (1, n, 0, 0, 0), ONE, (1, 1, 5, 5, 4)) +
+            "</Attribute></Grid>")
+
+
+joined = np.zeros((10, 10, 8))
+for n in range(8):
+    joined[5 * (n >> 2):, 5 * (n >> 1 & 1):, 4 * (n & 1):][:5, :5, :4] = blocks_of[1, n]
+PARTS = "".join(block(n, n > 3) for n in range(8))
+for outside in ('<Grid GridType="Collection">{}</Grid>',
+                '<Grid GridType="Collection" CollectionType="Spatial"><Time Value="3"/>{}'
+                "</Grid>", '<Grid GridType="Collection" CollectionType="Temporal">'
+                '<Grid GridType="Collection" CollectionType="Spatial"><Time Value="2"/>{0}'
+                '</Grid><Grid GridType="Collection" CollectionType="Spatial">'
+                '<Time Value="3"/>{0}</Grid></Grid>'):
+    put("y.xmf", START + outside.format(PARTS) + END)
+    values_are(joined)
+    values_are(joined[3:8, 1:9, 2:6], "--crop", "2:6,1:9,3:8", "--time", -1)
+    oracle.tells("y.xmf", ["--time", -1], time_value=3.0 if "Value" in outside else None,
+                 times=2 if "Temporal" in outside else 1)
+
 # Times as text and in HDF5; those that are none; a grid's own beside a list.
 with h5py.File("times.h5", "w") as file:
     file["list"] = (0.25, 0.5, 0.75)

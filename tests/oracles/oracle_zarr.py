@@ -504,6 +504,13 @@ for chunks, whole in (((1, 4, 11, 20), True), ((4, 1, 6, 7), False)):
             oracle.fail("era.zarr", f"{chunks} {options}: other values")
         oracle.tells("era.zarr", options, time_value=6.0 * time, times=4,
                      axis_units=["degrees", "degrees", "millibars"])
+found, _ = oracle.voxels_of("era.zarr", ["--component", "u,v", "--time", 3])
+speed = np.hypot(*(np.where(part[3] == -32767, np.nan, part[3] * 0.001 + 5)
+                   for part in (winds["u"].astype("f8"), winds["v"])))
+at = [np.abs(heights - level).argmin() for level in LEVELS]
+# Lengths of lines of the file, where each stands at a node of its own.
+if not np.allclose(found[at], speed, rtol=1e-6, equal_nan=True):
+    oracle.fail("era.zarr", "other speeds")
 
 # Real ones.
 for name in ("mni152.ome.zarr", "mni152_axial.ome.zarr"):

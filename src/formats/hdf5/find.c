@@ -217,6 +217,7 @@ snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
     }
     snprintf(out->path, sizeof out->path, "%s%s", *asked == '/' ? "" : "/",
              asked);
+    out->spatial = !strncmp(asked, "/./", 3);
     return SNOW_STATUS_OK;
 }
 

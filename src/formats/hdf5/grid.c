@@ -357,6 +357,7 @@ snow_status snow_hdf5_read_axes(snow_context *context, const hdf5_file *file,
                   !strcmp(colours, "IMAGE_TRUECOLOR") &&
                   (!*order || !strcmp(order, "INTERLACE_PIXEL"));
     s.hints[0].components |= out->colors;
+    s.hints[0].space |= set->spatial;
     if (snow_axes_assign(set->axes, sizes, s.hints, &out->roles))
         return SNOW_STATUS_OK;
     return snow_fail(context, SNOW_STATUS_BAD_INPUT,

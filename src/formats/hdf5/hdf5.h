@@ -51,6 +51,7 @@ typedef struct hdf5_set {
     snow_type type;
     bool constant; /* openPMD: a group with a value and a shape; id is its */
     double value;
+    bool spatial; /* asked for behind "/./": no axis is of components */
 } hdf5_set;
 
 /* Opens a source as an HDF5 file.  libhdf5 prints nothing until it is closed,

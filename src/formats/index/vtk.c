@@ -34,6 +34,34 @@ static snow_status begin_element(void *user, const char *name,
     return file ? snow_index_add(&index->list, file, 0, time) : SNOW_STATUS_OK;
 }
 
+/* Surfaces and meshes, which have no voxels. */
+static bool is_mesh(const char *name) {
+    static const char *const suffixes[] = {".vtp",  ".vtu",  ".vts",
+                                           ".pvtp", ".pvtu", ".pvts"};
+    const char *dot = strrchr(name, '.');
+    bool found = false;
+    for (size_t i = 0; dot && i < sizeof suffixes / sizeof *suffixes; i++)
+        found = found || snow_same_name(dot, suffixes[i]);
+    return found;
+}
+
+/* Leaves them out where there is something else. */
+static void leave_meshes_out(index_list *list) {
+    const char *mesh = NULL;
+    size_t kept = 0;
+    for (size_t i = 0; i < list->count; i++)
+        if (is_mesh(snow_index_name(list, i)))
+            mesh = snow_index_name(list, i);
+        else
+            list->entries[kept++] = list->entries[i];
+    if (kept && mesh)
+        snow_notify(list->context,
+                    "%zu of %zu files are surfaces or meshes, which have no "
+                    "voxels (%.100s); they are left out",
+                    list->count - kept, list->count, mesh);
+    list->count = kept ? kept : list->count;
+}
+
 /* Data sets without a time are parts of one step. */
 static snow_status read_index(snow_source *source, const char *format,
                               const snow_volume_options *options,
@@ -42,6 +70,7 @@ static snow_status read_index(snow_source *source, const char *format,
     vtk_index index = {.list = {.context = snow_source_context(source)}};
     snow_status status = snow_index_parse(source, &handlers, &index);
     if (status == SNOW_STATUS_OK) {
+        leave_meshes_out(&index.list);
         snow_index_sort(&index.list);
         status =
             snow_index_read(source, &index.list, format, options, info, out);

@@ -11,8 +11,10 @@
  *
  * Numbers stand in the order of the array, the slowest first.  A grid without a
  * topology or geometry of its own, or with a reference, has the last one
- * before.  A collection may list the times of its grids (TimeType "List", or
- * "HyperSlab": the first, the step, how many). */
+ * before.  Values may be a HyperSlab, a box of an array of up to five axes, or
+ * several arrays joined to a vector.  Grids of a collection in space are parts
+ * of one grid.  A collection in time may list the times of its grids (TimeType
+ * "List", or "HyperSlab": the first, the step, how many). */
 #include "formats/index/xdmf.h"
 #include "formats/vtk/vtk.h"
 
@@ -20,12 +22,58 @@
 #include <math.h>
 #include <string.h>
 
+/* The box, step and channel of a data set that a HyperSlab is; the crop of the
+ * options counts within it. */
+static snow_status select_slab(const xdmf_file *f, const xdmf_item *item,
+                               snow_volume_options *own) {
+    const int lead = item->axes > 3 ? item->axes - 3 : 0;
+    bool right = true;
+    own->dataset = NULL;
+    own->time = 0;
+    for (int a = 0; a < item->axes; a++) {
+        const int64_t first = item->slab[0][a], count = item->slab[2][a];
+        const int k = item->axes - 1 - a;
+        right = right && first >= 0 && count >= 1 &&
+                first < INT64_MAX - count &&
+                (a < lead ? count == 1 : count == 1 || item->slab[1][a] == 1);
+        if (a < lead || !right)
+            continue;
+        own->crop[k][1] = first + (own->crop[k][1] ? own->crop[k][1] : count);
+        own->crop[k][0] += first;
+    }
+    if (lead)
+        own->time = item->slab[0][0];
+    if (lead > 1)
+        own->channel = item->slab[0][1];
+    own->each_time = own->each_channel = true;
+    return right ? SNOW_STATUS_OK
+                 : snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
+                             "has a HyperSlab of %s that is not one box of its "
+                             "last three axes; write it as a data set",
+                             item->text);
+}
+
+/* Opens what an item is of a data set. */
+static snow_status open_item(const xdmf_file *f, const xdmf_item *item,
+                             snow_volume_options *own, snow_volume_info *info,
+                             snow_volume **out) {
+    SNOW_TRY(select_slab(f, item, own));
+    const snow_status status =
+        snow_volume_open_named(f->source, item->text, own, info, out);
+    return item->axes && status == SNOW_STATUS_BAD_USAGE
+               ? snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
+                           "has a HyperSlab that does not lie in %s; correct "
+                           "it",
+                           item->text)
+               : status;
+}
+
 /* Reads numbers of the geometry: `count` of them. */
 static snow_status read_numbers(xdmf_file *f, const xdmf_item *item,
                                 int64_t count, double **out) {
     const vtk_line line = {"its geometry", count, true, false,
                            SNOW_TYPE_FLOAT64};
-    const snow_volume_options plain = {.size = sizeof plain};
+    snow_volume_options plain = {.size = sizeof plain};
     snow_volume_info info;
     snow_volume *row;
     if (item->xml) {
@@ -41,8 +89,7 @@ static snow_status read_numbers(xdmf_file *f, const xdmf_item *item,
         return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
                          "its geometry is in a raw file, which is not "
                          "supported; write it into the XML");
-    SNOW_TRY(
-        snow_volume_open_named(f->source, item->text, &plain, &info, &row));
+    SNOW_TRY(open_item(f, item, &plain, &info, &row));
     const int64_t *dims = row->info.dims;
     snow_status status = SNOW_STATUS_OK;
     if (dims[0] * dims[1] * dims[2] != count)
@@ -136,15 +183,27 @@ typedef struct xdmf_values {
     int64_t dims[3];
 } xdmf_values;
 
+/* That of a component, of those that are joined. */
+static const xdmf_item *item_of(const xdmf_values *v) {
+    const xdmf_step *kept = &v->file->kept;
+    return kept->joined ? &kept->parts[v->channel] : &kept->item;
+}
+
 static snow_status read_raw(const xdmf_values *v,
                             const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out) {
     const xdmf_file *f = v->file;
-    const xdmf_item *item = &f->kept.item;
+    const xdmf_item *item = item_of(v);
+    const bool joined = f->kept.joined > 0;
     snow_array array = {.big_endian = item->big_endian};
     snow_source *data;
-    if (!snow_array_of_grid(item->type, v->dims, f->kept.vector ? 3 : 1,
-                            v->channel, (uint64_t)item->seek, &array))
+    if (item->axes)
+        return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
+                         "has a HyperSlab of a raw file, which is not "
+                         "supported; write it as a file");
+    if (!snow_array_of_grid(
+            item->type, v->dims, f->kept.vector && !joined ? 3 : 1,
+            joined ? 0 : v->channel, (uint64_t)item->seek, &array))
         return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
                          "its sizes are too large for any file; correct them");
     array.more = f->attributes > 1; /* their values may stand behind */
@@ -158,20 +217,29 @@ static snow_status read_raw(const xdmf_values *v,
 static snow_status read_values(void *user, const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **out) {
     const xdmf_values *v = user;
+    const xdmf_item *item = item_of(v);
+    const bool joined = v->file->kept.joined > 0;
     snow_volume_options own = *options;
-    snow_volume_info set;
-    if (v->file->kept.item.binary)
+    snow_volume_info set = *info;
+    snow_region box;
+    if (item->binary)
         return read_raw(v, options, info, out);
-    own.dataset = NULL;
-    own.time = 0;
-    SNOW_TRY(snow_volume_open_named(v->file->source, v->file->kept.item.text,
-                                    &own, &set, out));
+    SNOW_TRY(snow_region_lay_out(v->file->context, options, &set, &box));
+    if (joined) {
+        own.component = NULL;
+        own.channel = 0;
+    }
+    SNOW_TRY(select_slab(v->file, item, &own));
+    SNOW_TRY(
+        snow_volume_open_named(v->file->source, item->text, &own, &set, out));
     memcpy(info->dims, set.dims, sizeof info->dims);
     info->type = set.type;
     info->slope = set.slope;
     info->intercept = set.intercept;
-    info->components = set.components;
-    info->magnitude = set.magnitude;
+    if (!joined) {
+        info->components = set.components;
+        info->magnitude = set.magnitude;
+    }
     if (*set.value_unit)
         memcpy(info->value_unit, set.value_unit, sizeof info->value_unit);
     return SNOW_STATUS_OK;
@@ -186,10 +254,12 @@ static snow_status look_at_values(xdmf_file *f, vtk_grid *grid,
     array->type = item->type;
     if (item->binary)
         return SNOW_STATUS_OK;
-    own.dataset = NULL;
-    own.time = 0;
     memset(own.crop, 0, sizeof own.crop);
-    SNOW_TRY(snow_volume_open_named(f->source, item->text, &own, &set, NULL));
+    if (f->kept.joined) {
+        own.component = NULL;
+        own.channel = 0;
+    }
+    SNOW_TRY(open_item(f, item, &own, &set, NULL));
     array->type = set.type;
     for (int i = 0; i < 3; i++) {
         int64_t count = grid->points[i] - (array->cells && grid->points[i] > 1);
@@ -212,9 +282,12 @@ static snow_status read_grid(xdmf_file *f, vtk_grid *grid,
     SNOW_TRY(look_at_values(f, grid, &array));
     memcpy(array.name, f->kept.name, sizeof f->kept.name);
     SNOW_TRY(snow_vtk_describe(f->context, grid, &array, f->options, info));
-    if (f->kept.item.binary)
-        SNOW_TRY(snow_volume_pick_component(
-            f->context, f->options, f->kept.vector ? 3 : 1, info, &v.channel));
+    if (f->kept.item.binary || f->kept.joined)
+        SNOW_TRY(snow_volume_pick_component(f->context, f->options,
+                                            f->kept.joined   ? f->kept.joined
+                                            : f->kept.vector ? 3
+                                                             : 1,
+                                            info, &v.channel));
     memcpy(v.dims, grid->uneven.count, sizeof v.dims);
     info->times = 1;
     info->time = 0;
@@ -229,10 +302,6 @@ static snow_status read_grid(xdmf_file *f, vtk_grid *grid,
 }
 
 static snow_status check_kept(const xdmf_file *f) {
-    if (f->skips)
-        return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
-                         "has grids side by side, which are not supported; "
-                         "write one grid for each step");
     if (!f->kept.found && f->options->dataset)
         return snow_fail(f->context, SNOW_STATUS_BAD_USAGE,
                          "--dataset %.100s: there is no such attribute; the "
@@ -245,6 +314,44 @@ static snow_status check_kept(const xdmf_file *f) {
         return snow_fail(f->context, SNOW_STATUS_BAD_INPUT,
                          "its values are in the XML itself, which is not "
                          "supported; write them to HDF5");
+    return SNOW_STATUS_OK;
+}
+
+/* --- grids side by side --------------------------------------------------- */
+
+static void name_part(void *user, size_t index, char name[INDEX_NAME_BYTES]) {
+    (void)user;
+    *name = 0;
+    snow_append(name, INDEX_NAME_BYTES, "grid %lld", (long long)index);
+}
+
+static snow_status open_part(void *user, size_t index,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    xdmf_file *f = user;
+    const snow_volume_options *before = f->options;
+    vtk_grid grid;
+    f->kept = f->parts[index];
+    f->options = options;
+    *info = snow_volume_info_default("xdmf");
+    SNOW_TRY(check_kept(f));
+    snow_status status = read_grid(f, &grid, info, out);
+    snow_vtk_release(f->context, &grid);
+    f->options = before;
+    return status;
+}
+
+static snow_status read_parts(xdmf_file *f, snow_volume_info *info,
+                              snow_volume **out) {
+    const snow_volume_info series = *info;
+    const index_parts parts = {f->context, f->part_count, f, name_part,
+                               open_part};
+    SNOW_TRY(snow_mosaic_read(&parts, f->options, info, out));
+    const double time =
+        isnan(f->kept.time) ? time_of(f, series.time) : f->kept.time;
+    info->times = series.times;
+    info->time = series.time;
+    info->time_value = isfinite(time) ? time : NAN;
     return SNOW_STATUS_OK;
 }
 
@@ -267,6 +374,8 @@ static snow_status read_file(xdmf_file *f, snow_volume_info *info,
                          "the end; give %lld",
                          (long long)f->options->time, (long long)own.time);
     }
+    if (f->part_count > 1)
+        return read_parts(f, info, out);
     SNOW_TRY(check_kept(f));
     snow_status status = read_grid(f, &grid, info, out);
     snow_vtk_release(f->context, &grid);
@@ -286,6 +395,7 @@ static snow_status read_xdmf(snow_source *source,
     f->now.time = NAN;
     snow_status status = read_file(f, info, out);
     snow_release(context, f->numbers);
+    snow_release(context, f->parts);
     snow_release(context, f);
     return status;
 }

@@ -7,6 +7,8 @@
 
 #define XDMF_TEXT_BYTES 512
 #define XDMF_MOST_ITEMS 3
+#define XDMF_MOST_AXES 5
+#define XDMF_MOST_PARTS 65536 /* of a step */
 
 /* Where numbers are. */
 typedef struct xdmf_item {
@@ -16,6 +18,8 @@ typedef struct xdmf_item {
     int64_t seek;
     size_t numbers; /* in XML: their place among all texts */
     size_t length;
+    int axes;                        /* of a HyperSlab of it; 0: the whole */
+    int64_t slab[3][XDMF_MOST_AXES]; /* first, step, count; slowest first */
 } xdmf_item;
 
 /* A grid, from its topology and geometry. */
@@ -28,24 +32,34 @@ typedef struct xdmf_grid {
     int item_count;
 } xdmf_grid;
 
-/* A step's array. */
+/* An array of a step, or of a part of one. */
 typedef struct xdmf_step {
     xdmf_grid grid;
+    int64_t step;
     double time;
     char name[64];
     bool cells, vector, found;
-    xdmf_item item;
+    xdmf_item item; /* the first one of those that are joined */
+    xdmf_item parts[XDMF_MOST_ITEMS]; /* components */
+    int joined;
 } xdmf_step;
 
 typedef struct xdmf_file {
     snow_source *source;
     snow_context *context;
     const snow_volume_options *options;
-    xdmf_step now;  /* the grid that is read */
-    xdmf_step kept; /* the step that is wanted */
+    xdmf_step now;    /* the grid that is read */
+    xdmf_step kept;   /* the step that is wanted */
+    xdmf_step *parts; /* the grids of it, side by side */
+    size_t part_count;
     int64_t steps;
     uint64_t collections; /* a bit of each Grid that is open: it is one */
-    bool in_geometry, in_attribute, in_times, in_item, skips;
+    uint64_t spaces;      /* and one in space */
+    double space_time;    /* of the one in space */
+    bool loose, timed;    /* some collection does not say of what; any times */
+    bool in_geometry, in_attribute, in_times, in_item, in_slab, joins;
+    int slab_axes; /* of the HyperSlab that is read; 0: not yet known */
+    int64_t slab[3][XDMF_MOST_AXES];
     bool even_times; /* of a collection: first, step, count; else one each */
     xdmf_item times; /* length 0: none */
     char attribute[64];
