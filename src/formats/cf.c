@@ -223,8 +223,9 @@ static void place_axis(snow_context *context, const cf_axis axes[3], int i,
 
 /* A grid of the earth is flat: where x and y are in degrees and z is not, it
  * gets a third of their shorter side in height. */
-static void raise(snow_context *context, const snow_volume_options *options,
-                  snow_volume_info *info) {
+static void make_higher(snow_context *context,
+                        const snow_volume_options *options,
+                        snow_volume_info *info) {
     double side[3];
     for (int i = 0; i < 3; i++)
         side[i] = fabs(info->matrix[i][i]) * (double)(info->dims[i] - 1);
@@ -254,7 +255,7 @@ void snow_cf_place(snow_context *context, const cf_axis axes[3],
         place_axis(context, axes, i, grid, given, info);
     if (x->given && strlen(x->unit) < sizeof info->unit)
         memcpy(info->unit, x->unit, strlen(x->unit) + 1);
-    raise(context, options, info);
+    make_higher(context, options, info);
 }
 
 void snow_cf_time(const cf_axis *axis, snow_volume_info *info) {

@@ -59,3 +59,11 @@ int snow_volume_thin_axis(const snow_volume_info *info) {
             return axis;
     return -1;
 }
+
+void snow_volume_stretch(snow_volume_info *info, double times) {
+    double *scale = &info->axis_scale[2];
+    for (int i = 0; i < 4; i++)
+        info->matrix[2][i] *= times;
+    *scale = (fabs(*scale) > 0 ? *scale : 1) * times;
+    snow_volume_info_measure(info);
+}

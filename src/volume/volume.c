@@ -262,14 +262,6 @@ snow_status snow_volume_set_whole(snow_volume *volume,
     return SNOW_STATUS_OK;
 }
 
-void snow_volume_stretch(snow_volume_info *info, double times) {
-    double *scale = &info->axis_scale[2];
-    for (int i = 0; i < 4; i++)
-        info->matrix[2][i] *= times;
-    *scale = (fabs(*scale) > 0 ? *scale : 1) * times;
-    snow_volume_info_measure(info);
-}
-
 snow_volume_info snow_volume_info_of_box(const snow_volume_info *whole,
                                          const int64_t first[3],
                                          const int64_t count[3]) {
