@@ -17,7 +17,8 @@ void world_units(const snow_volume_info *info, char *out, size_t size);
 /* The world's length of one unit; below 0 where they grow downward. */
 double world_length(const snow_volume_info *info, int axis);
 
-/* How many of the axis' units one of another is; 0: they do not compare. */
+/* How many of the axis' units one of another is, where it has one of its own;
+ * 0: they do not compare. */
 double world_ratio(const snow_volume_info *info, int axis, const char *unit);
 
 /* Matrix and spacing in the units of the axes. */
