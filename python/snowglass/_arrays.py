@@ -254,19 +254,29 @@ def _place_of(source: Any, names: Mapping[str, str]) -> tuple[Any, str]:
     found = {axis: _coordinate(source, names[axis]) for axis in "xyz"}
     x = found["x"]
     affine = numpy.eye(4)
+    same = {axis: at.given and _ratio(at.unit, x.unit) for axis, at in found.items()}
     for n, axis in enumerate("xyz"):
         step, first, unit, given = found[axis]
-        ratio = _ratio(unit, x.unit) if given else 0.0
-        if given and not ratio:
+        metres = _ratio(unit, "m")
+        ratio = same[axis] or (metres / DEGREE if metres and x.unit == "degrees"
+                               else abs(x.step / step))
+        if given and not same[axis]:
             warn(f"coordinate '{names[axis]}' has another unit ({unit!r}) than x "
                  f"({x.unit!r}): it has a height of its own; spacing= gives another")
-        usual = x.step
-        if axis == "z" and x.unit == found["y"].unit == "degrees":
-            usual = min(abs(affine[k, k]) * (source.sizes[names["xy"[k]]] - 1)
-                        for k in (0, 1)) / 3 / max(source.sizes[names["z"]] - 1, 1)
-        affine[n, n] = step * ratio or math.copysign(usual, step)
-        affine[n, 3] = first * ratio
+        affine[n, n] = step * ratio if given else abs(x.step)
+        affine[n, 3] = first * ratio if given and unit not in TIMES else 0
+    sides = [abs(affine[n, n]) * (source.sizes[names[axis]] - 1)
+             for n, axis in enumerate("xyz")]
+    if x.given and same["y"] == 1 and not same["z"] and x.unit == "degrees" and \
+            min(sides) > 0:
+        affine[2] *= min(sides[:2]) / 3 / sides[2]
     return affine, x.unit if x.given else ""
+
+
+#: Units of steps in time, which a file begins at 0 of space.
+TIMES = ("s", "ms", "us", "ns", "min", "minutes", "h", "hours", "days", "years")
+#: Metres in a degree of a sphere as large as the earth.
+DEGREE = 111195.0
 
 
 class _Coordinate(NamedTuple):

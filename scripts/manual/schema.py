@@ -47,7 +47,8 @@ POINTS = array(array([number(), share()], 2), 1, 256)
 TYPES = {
     "flag": {"type": "boolean"},
     "text": string(),
-    "component": string(),
+    "component": any_of(enum("x", "y", "z", "w", "magnitude"),
+                        string(pattern="^[0-9]+$"), string(pattern=".,.")),
     "channels": any_of(integer(minimum=0), string()),
     "labels": string(),
     "preset": string(),

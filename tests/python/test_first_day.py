@@ -143,7 +143,7 @@ class FirstPictures(InFolder):
                 "lon": ("lon", numpy.arange(50) * 0.5, {"units": "degrees_east"})})
         with self.assertWarnsRegex(sg.SnowglassWarning, "'level' has another unit"):
             volume = sg.Volume(array)
-        self.assertEqual(volume.spacing, (0.5, 0.5, 0.5))
+        numpy.testing.assert_allclose(volume.spacing, (0.5, 0.5, 19.5 / 3 / 29))
         self.shows_a_ball(volume.render())
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -151,7 +151,12 @@ class FirstPictures(InFolder):
             file = sg.Volume("t.nc")
             numpy.testing.assert_allclose(volume.affine, file.affine)
             array.coords["level"].attrs["positive"] = "down"
-            self.assertEqual(sg.Volume(array).affine[2, 2], -0.5)
+            self.assertAlmostEqual(sg.Volume(array).affine[2, 2], -19.5 / 3 / 29)
+            numpy.testing.assert_allclose(file.spacing, (0.5, 0.5, 500))
+            self.assertEqual(file.axis_units, ("degrees", "degrees", "m"))
+            higher = sg.Volume("t.nc", z_scale=2)
+            self.assertAlmostEqual(higher.affine[2, 2], 2 * 500 / 111195)
+            numpy.testing.assert_allclose(higher.spacing, file.spacing)
 
     @needs("xarray", "netCDF4")
     def test_coordinates_count_as_those_of_files(self):
