@@ -236,15 +236,17 @@ class Volume(_snowglass.Volume):
         if all(abs(scale) == 1 for scale in scales):
             return info["spacing"]
         rows = list(zip(info["matrix"], scales))
-        return tuple(math.hypot(*(row[n] / scale for row, scale in rows))
-                     for n in range(3))
+        x, y, z = (math.hypot(*(row[n] / scale for row, scale in rows))
+                   for n in range(3))
+        return x, y, z
 
     @property
     def axis_units(self) -> tuple[str, str, str]:
         """The unit of each axis of the world, as ("degrees", "degrees", "hPa");
         affine has them in lengths that can be drawn beside each other: those of
         one unit are info["axes"][n][1], below 0 where it grows downward."""
-        return tuple(unit for unit, _ in self.info["axes"])
+        x, y, z = (unit for unit, _ in self.info["axes"])
+        return x, y, z
 
     @property
     def affine(self) -> "numpy.typing.NDArray[Any]":
