@@ -14,19 +14,23 @@ export function make(tag, properties = {}, ...children) {
     return element;
 }
 
+const has = (name, text) => name.toLowerCase().includes(text.toLowerCase());
+
+/** What is spoken has what is written in it. */
 export function button(text, name, press) {
     return make('button', {type: 'button', textContent: text, title: name,
-        'aria-label': name, onclick: press});
+        'aria-label': /[a-z]/i.test(text) && !has(name, text) ? `${name} (${text})` : name, onclick: press});
 }
 
 let count = 0;
 
-/** A row with a name that belongs to its first control. */
+/** A row with a name, which belongs to its first control unless that has another. */
 export function row(name, control, ...more) {
+    const own = control.getAttribute('aria-label') ?? name;
     control.id ||= `control${++count}`;
-    return make('div', {className: 'row'},
-        make('label', {className: 'name', textContent: name, htmlFor: control.id}),
-        control, ...more);
+    return make('div', {className: 'row'}, has(own, name)
+        ? make('label', {className: 'name', textContent: name, htmlFor: control.id})
+        : make('span', {className: 'name', textContent: name}), control, ...more);
 }
 
 export function select(options, change) {

@@ -235,7 +235,7 @@ export class Editor {
         if (!g)
             return;
         const style = getComputedStyle(this.canvas);
-        this.drawHistogram(g, style.getPropertyValue('--line'));
+        this.drawHistogram(g, style.getPropertyValue('--bars'));
         this.drawStrip(g);
         this.drawPoints(g, style.getPropertyValue('--text'), style.getPropertyValue('--accent'));
         const point = this.points[this.chosen];

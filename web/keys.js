@@ -1,7 +1,7 @@
 // keys.js - the keyboard, where no field takes it.
 
 import {zoomed} from './camera.js';
-import {make} from './controls.js';
+import {check, make} from './controls.js';
 
 export const VIEWS = ['anterior', 'posterior', 'left', 'right', 'superior', 'inferior'];
 export const MODES = ['over', 'mip', 'minip', 'mean', 'sum', 'iso'];
@@ -16,31 +16,49 @@ const TEXTS = [['Drag', 'turn'], ['Shift or middle drag', 'move'], ['Wheel', 'zo
     ['+ -', 'zoom'], ['r', 'frame all'],
     ['1 - 6', 'front, back, left, right, top, bottom'], ['m', 'next mode'],
     ['p', 'perspective'], ['l', 'letters'], ['Space', 'play time steps'],
-    ['c v', 'the command, that of a movie'], ['s', 'save the picture'], ['z Shift+z', 'undo, redo'],
+    ['c v', 'the command, that of a movie'], ['s', 'save the picture'], ['z Shift+z', 'undo, redo; Ctrl+z, Ctrl+y too'],
     ['?', 'this help']];
 
-export function helpTable() {
-    return make('table', {}, ...TEXTS.map(([key, text]) => make('tr', {},
-        make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: text}))));
+/** And whether keys that are single letters act. */
+export function help(page) {
+    const {box, label} = check('single letters, digits and signs act', on => {
+        page.letters = on;
+    });
+    box.checked = page.letters;
+    return [label, make('table', {}, ...TEXTS.map(([key, text]) => make('tr', {},
+        make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: text}))))];
 }
 
 export const STEPS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 
-/** `actions` has what the buttons do, by name. */
+/** Of fields of text and lists all keys are their own; sliders keep those that move them,
+ * what is pressed keeps Space and Enter. */
+function isTaken({key, target}) {
+    const at = selector => target.closest?.(selector);
+    if (at('dialog, select, textarea, input:not([type="range"], [type="checkbox"], [type="color"])'))
+        return true;
+    if (at('[type="range"]'))
+        return /^(Arrow|Page|Home|End)/.test(key);
+    return (key === ' ' || key === 'Enter') && Boolean(at('button, summary, input'));
+}
+
+/** `actions` has what the buttons do, by name.  `page.letters` says whether single letters
+ * act, which a user may not want who speaks to the machine. */
 export function listenToKeys(recipe, page, actions, pointer) {
     document.addEventListener('keydown', event => {
-        const field = event.target.closest?.('input, select, textarea, dialog, summary');
-        if (field || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !page.info || !page.look)
+        const {key, ctrlKey, metaKey, altKey, shiftKey} = event, control = ctrlKey || metaKey;
+        if (isTaken(event) || event.defaultPrevented || altKey || !page.info || !page.look)
             return;
-        if (press(event, recipe, page, actions, pointer))
+        const step = control && {z: shiftKey ? 'redo' : 'undo', y: 'redo'}[key.toLowerCase()];
+        if (step)
+            actions[step]();
+        if (step || (!control && (page.letters || key.length > 1) && press(event, recipe, page, actions, pointer)))
             event.preventDefault();
     });
 }
 
 function press(event, recipe, page, actions, pointer) {
     const {key} = event;
-    if (key === ' ' && event.target.closest?.('button'))
-        return false;
     if (STEPS[key]) {
         pointer.step(...STEPS[key].map(way => way * (event.shiftKey ? 1 : 5)));
     } else if (key === '+' || key === '=' || key === '-') {

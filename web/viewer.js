@@ -4,7 +4,7 @@
 import {button, make, select} from './controls.js';
 import {ServerEngine} from './engine_server.js';
 import {aimed, unproject} from './camera.js';
-import {MODES, helpTable, listenToKeys} from './keys.js';
+import {MODES, help, listenToKeys} from './keys.js';
 import {Overlay} from './overlay.js';
 import {Panel} from './panel.js';
 import {Pointer, TOOLS} from './pointer.js';
@@ -20,7 +20,7 @@ const given = new URLSearchParams(location.hash.slice(1));
 window.onhashchange = () => location.reload(); // another secret, another link
 const engine = new ServerEngine(given.get('token') ?? '');
 const recipe = new Recipe(engine);
-const page = {info: null, look: null, histogram: null, rest: null, clipping: false, tool: 'turn'};
+const page = {info: null, look: null, histogram: null, rest: null, clipping: false, tool: 'turn', letters: true};
 
 // --- elements ----------------------------------------------------------------
 
@@ -154,7 +154,7 @@ const actions = {
     },
     undo: () => recipe.undo() || say('Nothing to undo'),
     redo: () => recipe.redo() || say('Nothing to redo'),
-    help: () => open('Mouse, fingers and keys', helpTable()),
+    help: () => open('Mouse, fingers and keys', ...help(page)),
 };
 
 // --- the picture ------------------------------------------------------------------

@@ -225,6 +225,74 @@ async function names(page) {
     check('every control has a name', nameless.length === 0, nameless.join(' '));
 }
 
+/** Keys act wherever they mean nothing else, and single letters can be switched off. */
+async function keyboard(page) {
+    const header = page.locator('summary', {hasText: 'Clip'}), {azimuth = 0, mode = 'over'} = await keys(page);
+    const now = async () => {
+        const {azimuth: a = 0, mode: m = 'over', clip} = await keys(page);
+        return `${a - azimuth} ${m} ${Boolean(clip)}`;
+    };
+    const is = async (what, want) => check(what, await now() === want, await now());
+    await header.click();
+    await press(page, 'ArrowLeft');
+    await is('arrows turn after a click on a header', `5 ${mode} false`);
+    const end = page.getByLabel(/clip .*highest/).and(page.locator('input')).first();
+    await end.focus();
+    await press(page, 'Home');
+    await is('a slider has its keys', `5 ${mode} true`);
+    await press(page, 'm');
+    await is('and letters act beside it', '5 mip true');
+    await press(page, 'Control+z', 'Control+z');
+    await is('Ctrl+z undoes', `5 ${mode} false`);
+    await press(page, 'Control+Shift+z');
+    await is('Ctrl+Shift+z does again', `5 ${mode} true`);
+    await press(page, 'Control+z', 'Control+y');
+    await is('and so does Ctrl+y', `5 ${mode} true`);
+    await press(page, 'z', 'z', '?');
+    await page.getByLabel('single letters, digits and signs act').uncheck();
+    await page.keyboard.press('Escape');
+    await press(page, 'm', '3', 'ArrowLeft', 'ArrowRight');
+    await is('single letters can be switched off', `0 ${mode} false`);
+    await page.getByRole('button', {name: 'Mouse, fingers and keys (?)'}).click();
+    await page.getByLabel('single letters, digits and signs act').check();
+    await page.keyboard.press('Escape');
+    await header.click();
+}
+
+/** What is written can be read, spoken and seen. */
+async function readable() {
+    for (const colorScheme of ['dark', 'light']) {
+        const page = await open({viewport: {width: 640, height: 360}, colorScheme}); // 1280 x 720 at 200 %
+        const box = await page.locator('.picture').boundingBox();
+        check('the picture of a magnified page is high', box.height > 200 && box.width > 300, JSON.stringify(box));
+        const spoken = await page.evaluate(() => [...document.querySelectorAll('button[aria-label]')].filter(one =>
+            /[a-z]{2}/i.test(one.textContent) && !one.getAttribute('aria-label').toLowerCase().includes(
+                one.textContent.toLowerCase())).map(one => one.textContent));
+        check('names of buttons have their labels', spoken.length === 0, spoken.join());
+        const bars = await page.evaluate(() => {
+            const style = getComputedStyle(document.documentElement);
+            const light = name => {
+                const text = style.getPropertyValue(name).trim().slice(1);
+                const parts = text.length === 3 ? [...text].map(x => x + x) : text.match(/../g);
+                const [r, g, b] = parts.map(x => parseInt(x, 16) / 255).map(
+                    x => x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+                return 0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05;
+            };
+            const [a, b] = [light('--bars'), light('--field')];
+            return Math.max(a, b) / Math.min(a, b);
+        });
+        check('bars of the histogram stand out', bars >= 3, bars);
+        await shot(page, `magnified_${colorScheme}`);
+        await page.keyboard.press('x');
+        await slicesRest(page);
+        const ground = await page.evaluate(() => getComputedStyle(document.querySelector('figcaption')).backgroundColor);
+        check('captions have a ground', /rgba\(0, 0, 0, 0\.8\)/.test(ground), ground);
+        await shot(page, `magnified_slices_${colorScheme}`);
+        await page.keyboard.press('x');
+        await page.context().close();
+    }
+}
+
 /** How many bars and colours of the editor a change draws; it is undone. */
 const drawn = (page, change) => page.evaluate(changes => {
     const {recipe} = window.snowglass, {prototype} = CanvasRenderingContext2D, {fillRect} = prototype;
@@ -1064,6 +1132,9 @@ async function recipes() {
     check('and the others are taken', (await keys(page)).roll === 7);
     await page.context().close();
     await links();
+    const other = await open();
+    await keyboard(other);
+    await other.context().close();
 }
 
 /** Of a link all is taken that is understood. */
@@ -1273,7 +1344,7 @@ async function all() {
 
 async function more() {
     const page = await open();
-    for (const look of [marks, slices, handles, together, touch, schemes, prefixed])
+    for (const look of [marks, slices, handles, together, touch, schemes, prefixed, readable])
         await look(page);
     await page.context().close();
 }
