@@ -61,6 +61,10 @@ void identity_of(const char *path, char out[IDENTITY_BYTES]) {
     *out = 0;
 }
 
+const char *identity_isa(void) {
+    return "scalar";
+}
+
 const char *identity_of_program(void) {
     return "";
 }

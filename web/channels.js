@@ -20,8 +20,19 @@ export class Channels {
         this.rows = [];
         this.list = make('div', {});
         this.element = section('Channels', true, this.list, button('All',
-            'All channels as the file shows them', () => recipe.set({...plain, // else as --tf has them
-                channel: page.info.tf ? [...page.info.channels.keys()].slice(0, CHANNELS_MOST).join() : null})));
+            'All channels as the file shows them', () => this.all()));
+    }
+
+    get first() {
+        return [...this.page.info.channels.keys()].slice(0, CHANNELS_MOST);
+    }
+
+    /** As the file shows them, if these are all; else a list, which has the file's colours.
+     * A file of --tf is of one volume. */
+    all() {
+        const {recipe, page} = this, usual = 'channel' in recipe.keys && !page.info.tf;
+        this.before = usual && page.look;
+        recipe.set({...this.plain, channel: usual ? null : this.first.join()});
     }
 
     /** The next change may come before the server's look. */
@@ -64,6 +75,11 @@ export class Channels {
                 this.rows[one[0]] = this.row(one[0], one[1] || `channel ${one[0]}`);
                 this.list.append(this.rows[one[0]].element);
             }
+        if (this.before && look !== this.before) {
+            this.before = null;
+            if (drawn.length < this.first.length)
+                this.recipe.set({channel: this.first.join()});
+        }
         this.rows.forEach(({box, color, ends, opacity, more}, index) => {
             const one = drawn.find(([k]) => k === index);
             box.checked = Boolean(one);

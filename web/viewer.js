@@ -14,7 +14,7 @@ import {leftOut, sifted} from './valid.js';
 
 const SIDE_MOST = 4096;
 const FEW = 8; // drafts whose figures nobody could read
-const LEVELS = ['draft', 'normal', 'high: final'];
+const LEVELS = ['draft', 'almost final', 'final'];
 
 const given = new URLSearchParams(location.hash.slice(1));
 window.onhashchange = () => location.reload(); // another secret, another link
@@ -53,6 +53,12 @@ function say(line, stays = false) {
 }
 
 page.say = say;
+
+const SECTIONS = {channel: 'Channels', crop: 'Crop', clip: 'Clip', preset: 'Presets', range: 'Range',
+    window: 'Window', opacity: 'Opacity', colormap: 'Colours', time: 'Step', light: 'Light', title: 'Title'};
+
+/** What is said of options, in words of the page: "--channel N" is its section Channels. */
+const plain = line => line.replace(/--([a-z][a-z-]*)( [A-Z]+\b)?/g, (all, name) => SECTIONS[name] ?? name);
 
 function open(name, ...children) {
     dialog.replaceChildren(make('h2', {textContent: name}), ...children,
@@ -295,7 +301,7 @@ const overlay = new Overlay(recipe, page, pointer, slices);
 picture.append(...overlay.elements);
 let first = true, fresh = true; // the first state of all, and of a connection
 
-engine.on('closed', reason => say(reason, true));
+engine.on('closed', reason => say(plain(reason), true));
 engine.on('open', () => {
     const own = Object.entries(recipe.keys).filter(([key]) => !recipe.computed.includes(key) && key !== 'size');
     lost = {keys: Object.fromEntries(own), unheard: engine.lost};
@@ -303,7 +309,7 @@ engine.on('open', () => {
     fresh = true;
     say('');
 });
-engine.on('said', message => say(message.text));
+engine.on('said', message => say(plain(message.text)));
 engine.on('progress', ({stage, part}) => say(part < 1 ? `${stage}, ${Math.round(100 * part)} %` : ''));
 engine.on('command', message => copy('The command that makes this picture', message.text));
 engine.on('recipe', message => save(`${baseName()}.json`,

@@ -143,8 +143,8 @@ static int take_key(options *out, const verb_row *verb, const char *key,
         return take_inputs(out, value);
     char *text = config_text(out, key, value);
     if (!text)
-        return fail_usage("--config: %s is too long; use fewer points",
-                          out->config);
+        return fail_usage("%s: \"%s\" is too long; shorten it",
+                          out->config ? out->config : "the recipe", key);
     if (strcmp(key, "input") != 0)
         return options_take(out, verb, key, text);
     out->config_input = text;

@@ -8,6 +8,10 @@
 /* "1048576.1764489600.000000000" of a file or a folder; "" of what is none. */
 void identity_of(const char *path, char out[IDENTITY_BYTES]);
 
+/* The instruction set whose bits pictures have, for commands; NULL: that of the
+ * machine. */
+const char *identity_isa(void);
+
 /* Of this program: another one, or the same started again, has another. */
 const char *identity_of_program(void);
 

@@ -137,6 +137,8 @@ char *drawing_command(const drawing *d, unsigned verb) {
     json_t *tree = config_tree(&opts, verb_of(verb));
     if (!tree)
         return NULL;
+    if (identity_isa())
+        json_object_set_new(tree, "isa", json_string(identity_isa()));
     char *text = config_command(&opts, verb_of(verb), tree);
     json_decref(tree);
     return text;

@@ -103,6 +103,15 @@ def mixed():
     for place, count in (told, 3), (ten, 10):
         shutil.rmtree(place, ignore_errors=True)
         write_channels(place, True, count)
+    plain = os.path.join(shots, "plain.zarr")
+    shutil.copytree(told, plain, dirs_exist_ok=True)
+    with open(f"{plain}/.zattrs") as file:
+        about = json.load(file)
+    for each in about["omero"]["channels"][1:]:
+        each["active"] = False
+    with open(f"{plain}/.zattrs", "w") as out:
+        json.dump(about, out)
+    plan("plain", plain)
     two = points("two.json", [[0, 0], [900, 1]])
     plan("channels", told, copies=(PICTURE, SLICE))
     plan("begun", told, "--component", "1")

@@ -39,8 +39,7 @@ def of_tool(command, quality):
     words[0] = TOOL
     out = words[words.index("--output") + 1] = os.path.join(OUT, "tool.png")
     words[words.index("--quality") + 1] = quality
-    subprocess.run([*words, "-y", "-q", "--isa", "scalar", "--threads", "1"],
-                   check=True, cwd=OUT)
+    subprocess.run([*words, "-y", "-q", "--threads", "1"], check=True, cwd=OUT)
     with open(out, "rb") as file:
         return file.read()
 

@@ -61,7 +61,7 @@ def watch(*pages):
         with open(os.path.join(OUT, f"{name}.txt")) as file:
             words = shlex.split(file.read())
         words[words.index("--output") + 1] = "again.png"
-        tool(*words[1:], "-y", "-q", "--isa", "scalar")
+        tool(*words[1:], "-y", "-q")
         with open(os.path.join(OUT, "again.png"), "rb") as a, \
                 open(os.path.join(OUT, f"{name}-rest.png"), "rb") as b:
             check(f"{name}: the picture at rest is the command's",

@@ -1296,6 +1296,28 @@ async function begun() {
     await page.context().close();
 }
 
+/** Of a file that shows one channel *All* shows all. */
+async function plainChannels() {
+    const page = await open();
+    const drawn = () => page.evaluate(() => window.snowglass.page.look.channels.length);
+    check('a file shows one channel', await drawn() === 1, await drawn());
+    const all = page.getByRole('button', {name: /^All channels/});
+    await settle(page, all.click());
+    check('all are shown when they are asked for', await drawn() === 3, await drawn());
+    await press(page, 'z');
+    check('which is undone', await drawn() === 1, await drawn());
+    await set(page, {channel: '1'});
+    await all.click();
+    await page.waitForFunction(() => window.snowglass.page.look.channels.length === 3);
+    check('from another one too', true);
+    const said = await page.evaluate(() => {
+        window.snowglass.engine.tell('said', {text: 'give --channel N, or --range 0,1'});
+        return document.querySelector('.said').textContent;
+    });
+    check('lines speak of the page', said === 'give Channels, or Range 0,1', said);
+    await page.context().close();
+}
+
 /** Of more channels than are mixed, *All* takes the first ones. */
 async function many() {
     const page = await open();
@@ -1352,7 +1374,7 @@ async function more() {
 const tools = {answered, check, folder, keys, open, part, rest, slicesRest, wheel};
 const known = {short: first, long: all, more, film, steps: () => steps(tools),
     restarted: () => restarted(tools), embed: embedded, points: manyPoints, mask: masked,
-    overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, begun, many};
+    overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, plain: plainChannels, begun, many};
 
 async function run() {
     const {name, said} = part();
