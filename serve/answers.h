@@ -16,6 +16,11 @@ void answer_look(drawing *d, outbox *box);
 void answer_kept(drawing *d, viewer_state *s, uint32_t revision);
 void answer_figures(drawing *d, double hidden, outbox *box);
 
+/* That the file was replaced: once, as `told` has which was told of.  Pages
+ * know the volume by what it was: of another file a crop, another time or a
+ * clip plane would show voxels. */
+void answer_replaced(const drawing *d, char told[IDENTITY_BYTES], outbox *box);
+
 /* The step that a simulation has drawn. */
 void answer_step(outbox *box, int64_t step);
 

@@ -9,6 +9,7 @@
 #include "draw/slices.h"
 #include "draw/values.h"
 #include "run/log.h"
+#include "run/start.h"
 
 #include <snowglass/recipe.h>
 
@@ -309,4 +310,15 @@ void answer_figures(drawing *d, double hidden, outbox *box) {
 void answer_step(outbox *box, int64_t step) {
     answer_put(box, 0, MESSAGE_FIGURES,
                json_pack("{s:s, s:I}", "t", "step", "step", (json_int_t)step));
+}
+
+void answer_replaced(const drawing *d, char told[IDENTITY_BYTES], outbox *box) {
+    char now[IDENTITY_BYTES];
+    identity_of(d->opts.operands[0], now);
+    if (strcmp(now, d->identity) == 0 || strcmp(now, told) == 0)
+        return;
+    memcpy(told, now, sizeof now);
+    answer_put(box, 0, MESSAGE_PLAIN,
+               json_pack("{s:s, s:b, s:b}", "t", "replaced", "gone", !*now,
+                         "again", *now && process_ranks() == 1));
 }

@@ -22,6 +22,7 @@ struct renderer {
     uint32_t drawn; /* the last picture's revision */
     int level;      /* and quality; -1: none yet */
     int shrink;
+    draft_times times;
     uint32_t revision; /* of the picture under way */
     json_t *good;      /* the last recipe that was drawn, or opened with */
     json_t *vain;      /* what had no room in an emptied drawing; NULL: none */
@@ -101,7 +102,7 @@ static int draw(renderer *r, int level) {
         return done;
     double took = seconds_now() - begin + r->drawing->earlier_seconds;
     r->shrink =
-        draft_shrink(r->shrink, level, took,
+        draft_follow(&r->times, r->shrink, level, took,
                      snow_frame_stats(r->drawing->state.frame)->encoded);
     if (level > 0)
         tell_empty(r, image);
@@ -225,21 +226,6 @@ static bool try_answer(renderer *r, const viewer_question *question) {
            SNOW_STATUS_NO_MEMORY;
 }
 
-/* Pages know the volume by what it was: a file that was replaced is another
- * one, of which a crop, another time or a clip plane would show voxels. */
-static void look_at_file(renderer *r) {
-    char now[IDENTITY_BYTES];
-    if (r->drawing->live)
-        return;
-    identity_of(r->drawing->opts.operands[0], now);
-    if (strcmp(now, r->drawing->identity) == 0 || strcmp(now, r->replaced) == 0)
-        return;
-    memcpy(r->replaced, now, sizeof now);
-    answer_put(r->box, 0, MESSAGE_PLAIN,
-               json_pack("{s:s, s:b, s:b}", "t", "replaced", "gone", !*now,
-                         "again", *now && process_ranks() == 1));
-}
-
 static bool reopens(renderer *r, const json_t *question) {
     const char *what = json_string_value(json_object_get(question, "what"));
     if (strcmp(what, "reopen") != 0 || process_ranks() > 1)
@@ -307,7 +293,7 @@ static void serve_state(renderer *r, int level, json_t *recipe,
     outcome o = draw_state(r, level, recipe, anew || beside);
     note_recipe(r, &o, recipe);
     if (level > 0)
-        look_at_file(r);
+        answer_replaced(r->drawing, r->replaced, r->box);
     if (level == 2 && o.done != EXIT_INTERRUPTED)
         state_note_rest(r->state, recipe, revision);
     json_decref(recipe);

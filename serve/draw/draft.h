@@ -16,4 +16,20 @@
  * quick as a draft shows that all of the window is. */
 int draft_shrink(int shrink, int level, double took, bool encoded);
 
+/* Seconds of drafts of one size: where the machine is busy with other work some
+ * take longer than others, and their size would go up and down with each. */
+typedef struct draft_times {
+    double mean; /* of the last DRAFT_LARGER */
+    int count;
+} draft_times;
+
+/* Pictures that have to be slow, and quick, until another size follows; one
+ * that takes many times too long is enough. */
+#define DRAFT_SMALLER 3
+#define DRAFT_LARGER 8
+#define DRAFT_FAR 4.0
+
+int draft_follow(draft_times *times, int shrink, int level, double took,
+                 bool encoded);
+
 #endif

@@ -59,6 +59,30 @@ static void sizes_do_not_alternate(void **state) {
         }
 }
 
+/* Of a machine that does other work beside, by which every third draft or so
+ * takes several times as long as it would alone. */
+static void sizes_do_not_pulse_on_a_busy_machine(void **state) {
+    (void)state;
+    static const double factors[] = {1, 1, 6, 1, 4, 1, 1};
+    draft_times times = {.count = 0};
+    int shrink = 0, changes = 0, before = 0, pulses = 0;
+    for (int i = 0; i < 37; i++) {
+        const double busy = factors[i % 7];
+        int next = draft_follow(&times, shrink, 0,
+                                busy * seconds_at(0.014, 0.003, shrink), false);
+        changes += next != shrink;
+        shrink = next;
+        next = draft_shrink(before, 0, busy * seconds_at(0.014, 0.003, before),
+                            false);
+        pulses += next != before;
+        before = next;
+    }
+    assert_true(pulses > 8);
+    assert_in_range(changes, 0, 2);
+    /* One that takes very long is enough. */
+    assert_int_equal(draft_follow(&times, 0, 0, 0.5, false), 1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_slow_draft_gets_half_the_side),
@@ -66,6 +90,7 @@ int main(void) {
         cmocka_unit_test(one_that_encodes_does_not_count),
         cmocka_unit_test(pictures_at_rest_count_where_they_are_quick),
         cmocka_unit_test(sizes_do_not_alternate),
+        cmocka_unit_test(sizes_do_not_pulse_on_a_busy_machine),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
