@@ -289,8 +289,8 @@ function returned(touched) {
     if (same && !touched)
         recipe.replace(good);
     else if (JSON.stringify(good) !== JSON.stringify(sifted(recipe.keys, page.info).good))
-        question('The viewer was started again', `It shows ${page.info.name}${same ? ', changed by another page'
-            : ', which is another file'}. This page had a state of its own.`,
+        question('The viewer was started again', `It shows ${page.info.name}: ${same ? 'another page has changed it'
+            : 'this is another file'}. This page had a state of its own.`,
         ['Take the state of this page', () => recipe.replace(good)]);
 }
 
