@@ -101,19 +101,19 @@ void snow_clip_viewer(const snow_placement *p, snow_viewer *out) {
 
 /* --- cut faces ------------------------------------------------------------ */
 
-bool snow_clip_is_seen(const double plane[4], const snow_viewer *viewer) {
-    return viewer->perspective ? snow_dot(plane, viewer->eye) > plane[3]
-                               : snow_dot(plane, viewer->along) < 0;
-}
-
 float snow_clip_flatness(const snow_clip_planes *clip,
                          const snow_viewer *viewer, const double at[3]) {
-    double flat = 0;
+    double along[3], flat = 0;
+    for (int axis = 0; axis < 3; axis++)
+        along[axis] = viewer->perspective ? at[axis] - viewer->eye[axis]
+                                          : viewer->along[axis];
+    snow_normalize(along);
     for (size_t n = 0; clip && n < clip->plane_count; n++) {
         const double *plane = clip->planes[n];
-        double depth = (plane[3] - snow_dot(plane, at)) / snow_length(plane);
-        if (snow_clip_is_seen(plane, viewer))
-            flat = fmax(flat, 2 - depth / SNOW_FLAT_DEPTH);
+        double below = plane[3] - snow_dot(plane, at);
+        double deeper = -snow_dot(plane, along);
+        if (deeper > 0)
+            flat = fmax(flat, 2 - below / deeper / SNOW_FLAT_DEPTH);
     }
     return (float)fmin(flat, 1);
 }

@@ -51,12 +51,9 @@ void snow_clip_viewer(const snow_placement *whole, snow_viewer *out);
 /* --- cut faces of clip planes ---------------------------------------------
  *
  * They are flat: next to them the gradient, which knows of no cut, lights
- * nothing but noise.  Up to this many voxels below a face that the viewer sees
- * colours are unlit, and lit as elsewhere from twice as many on. */
+ * nothing but noise.  So many voxels along a ray from where it enters through a
+ * plane colours are unlit, and lit as elsewhere from twice as many on. */
 #define SNOW_FLAT_DEPTH 2
-
-/* Returns whether the viewer is beyond a plane. */
-bool snow_clip_is_seen(const double plane[4], const snow_viewer *viewer);
 
 /* How much of the light at a place is that of cut faces, 0 to 1. */
 float snow_clip_flatness(const snow_clip_planes *clip,

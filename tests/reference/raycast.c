@@ -290,20 +290,17 @@ static void cut_planes(walk *w) {
     }
 }
 
-/* How much of the light at a place is that of cut faces; the viewer is beyond
- * the planes whose faces it sees. */
+/* How much of the light at a place is that of cut faces, which a ray has
+ * entered through. */
 static double flatness(const walk *w, const double at[3]) {
-    double flat = 0;
+    double length = sqrt(reference_dot(w->ray.step, w->ray.step)), flat = 0;
     for (int n = 0; n < w->cast->plane_count; n++) {
         double plane[4];
         index_plane(w, n, plane);
-        double below = (plane[3] - reference_dot(plane, at)) /
-                       sqrt(reference_dot(plane, plane));
-        bool is_seen = w->cast->scene->view.fov > 0
-                           ? reference_dot(plane, w->ray.start) > plane[3]
-                           : reference_dot(plane, w->ray.step) < 0;
-        if (is_seen)
-            flat = fmax(flat, fmin(1, 2 - below / 2));
+        double deeper = -reference_dot(plane, w->ray.step) / length;
+        double voxels = (plane[3] - reference_dot(plane, at)) / deeper;
+        if (deeper > 0)
+            flat = fmax(flat, fmin(1, 2 - voxels / 2));
     }
     return flat;
 }

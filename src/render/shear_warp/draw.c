@@ -1,7 +1,6 @@
 /* render/shear_warp/draw.c - lines 07 to 13: the tiles of the image on the
  * lattice.
  */
-#include "base/vec3.h"
 #include "render/shear_warp/layers.h"
 #include "volume/clip_planes.h"
 
@@ -127,10 +126,8 @@ static snow_status place_clips(snow_value_path *path,
                                const snow_value_params *params) {
     const snow_clip_planes *clip = params->volume->clip;
     const snow_placement *p = params->placement;
-    snow_viewer viewer;
     if (!clip)
         return SNOW_STATUS_OK;
-    snow_clip_viewer(params->stored, &viewer);
     SNOW_TRY(SNOW_RESERVE(path->context, path->clips, 0, clip->plane_count));
     for (size_t n = 0; n < clip->plane_count; n++) {
         path->clips[n][0] = clip->planes[n][p->u_axis];
@@ -140,10 +137,6 @@ static snow_status place_clips(snow_value_path *path,
         for (int axis = 0; axis < 3; axis++)
             path->clips[n][3] +=
                 path->clips[n][axis] * (double)params->clip->stored[axis];
-        path->clips[n][4] =
-            snow_clip_is_seen(clip->planes[n], &viewer)
-                ? 2 * SNOW_FLAT_DEPTH * snow_length(clip->planes[n])
-                : 0;
     }
     return SNOW_STATUS_OK;
 }
@@ -176,7 +169,7 @@ static void describe(snow_value_drawing *job) {
                            .resampled_count = l->resampled_count,
                            .phases = l->phases,
                            .channels = params->channels,
-                           .clips = (const double(*)[5])path->clips,
+                           .clips = (const double(*)[4])path->clips,
                            .labels = path->has_labels ? &path->labels : NULL};
     job->splat.leans = shaded && has_border(path);
     job->splat.borders = job->splat.leans;

@@ -133,7 +133,7 @@ struct snow_value_path {
     snow_value_rays rays; /* perspective: instead of places */
     snow_value_spread *spreads;
     snow_value_lanes *lanes[2];
-    double (*clips)[5];               /* clip planes by u, v and slice */
+    double (*clips)[4];               /* clip planes by u, v and slice */
     snow_transfer curve;              /* its gradient opacity only, ... */
     snow_opacity_point *curve_points; /* ... which are copied */
     snow_value_image *image;          /* that is drawn: one of these */

@@ -339,9 +339,8 @@ TARGET VALUE_INLINE void NAME(color)(const snow_value_splat *p,
     NAME(look_up)(p, q, count, channels, sloped);
     if (sloped)
         NAME(light_all)(p, slope, q, count, channels, cuts, eye);
-    for (int at = 0, n = 0; sloped && p->light && p->clip_count && at < phases;
-         at++)
-        n = snow_value_flatten(p, &slabs[at], q, n);
+    if (sloped && p->light && p->clip_count)
+        snow_value_flatten(p, slabs, phases, q);
     if (sloped && p->light)
         NAME(shade)(p->light, q, count, channels);
     if (eye && by_table)

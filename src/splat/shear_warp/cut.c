@@ -1,7 +1,9 @@
 /* splat/shear_warp/cut.c - slabs at the volume's sides, of which a ray
  * crosses a part only. */
 #include "base/minmax.h"
+#include "base/vec3.h"
 #include "splat/shear_warp/scratch.h"
+#include "transform/clip.h"
 
 #include <math.h>
 #include <string.h>
@@ -141,8 +143,8 @@ void snow_value_clip(const snow_value_splat *p, const double front[4],
     for (size_t plane = 0; plane < p->clip_count; plane++) {
         const double *clip = p->clips[plane];
         int sides[2] = {side_of(clip, 0, front), side_of(clip, 0, back)};
-        out->flat |= clip[4] > 0 && (side_of(clip, clip[4], front) <= 0 ||
-                                     side_of(clip, clip[4], back) <= 0);
+        double reach = 2 * SNOW_FLAT_DEPTH * snow_length(clip);
+        out->flat |= side_of(clip, reach, front) <= 0;
         if (sides[0] > 0 && sides[1] > 0)
             continue;
         for (int row = 0; !out->cuts && row < SNOW_VALUE_ROWS; row++)
@@ -166,36 +168,43 @@ void snow_value_clip(const snow_value_splat *p, const double front[4],
 /* How much of the light at a place of a slab is theirs. */
 static double flatness(const snow_value_splat *p, const value_clip *at, int row,
                        int lane, double place) {
-    const double apart = at->front[3] + place * (at->back[3] - at->front[3]);
-    const double aside[3] = {lane * apart, row * apart, 0};
-    double flat = 0;
+    const double aside[2] = {lane, row};
+    double front[3], way[3], flat = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        front[axis] = at->front[axis];
+        way[axis] = at->back[axis] - front[axis];
+        if (axis < 2) {
+            front[axis] += aside[axis] * at->front[3];
+            way[axis] += aside[axis] * (at->back[3] - at->front[3]);
+        }
+    }
     for (size_t n = 0; n < p->clip_count; n++) {
         const double *clip = p->clips[n];
-        double below = clip[3];
-        for (int axis = 0; axis < 3; axis++)
-            below -= clip[axis] * (at->front[axis] + aside[axis] +
-                                   place * (at->back[axis] - at->front[axis]));
-        if (clip[4] > 0)
-            flat = fmax(flat, 2 - 2 * below / clip[4]);
+        double deeper = -snow_dot(clip, way);
+        double slabs = place + (clip[3] - snow_dot(clip, front)) / deeper;
+        if (deeper > 0)
+            flat = fmax(flat, 2 - slabs * snow_length(way) / SNOW_FLAT_DEPTH);
     }
     return fmin(flat, 1);
 }
 
-int snow_value_flatten(const snow_value_splat *p, const value_slab *slab,
-                       value_queue *q, int n) {
+void snow_value_flatten(const snow_value_splat *p, const value_slab *slabs,
+                        int phases, value_queue *q) {
     const double one = p->light->bright ? 16384 : INT16_MAX;
-    for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
-        int row = __builtin_ctz(rows);
-        for (uint32_t left = slab->active[row]; left; left &= left - 1, n++) {
-            if (!slab->clip.flat)
-                continue;
-            double flat = flatness(p, &slab->clip, row, __builtin_ctz(left),
-                                   q->place[n] / 32768.0);
-            q->light[n] += (int16_t)(flat * (one - q->light[n]));
-            q->white[n] -= (int16_t)(flat * q->white[n]);
+    int n = 0;
+    for (const value_slab *slab = slabs; slab < slabs + phases; slab++)
+        for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
+            const int row = __builtin_ctz(rows);
+            uint32_t left = slab->active[row];
+            for (; left; left &= left - 1, n++) {
+                if (!slab->clip.flat)
+                    continue;
+                double flat = flatness(p, &slab->clip, row, __builtin_ctz(left),
+                                       q->place[n] / 32768.0);
+                q->light[n] += (int16_t)(flat * (one - q->light[n]));
+                q->white[n] -= (int16_t)(flat * q->white[n]);
+            }
         }
-    }
-    return n;
 }
 
 /* --- parts ---------------------------------------------------------------- */

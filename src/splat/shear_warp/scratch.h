@@ -391,10 +391,10 @@ void snow_value_cut(const double front[2], const double back[2], double low,
 void snow_value_clip(const snow_value_splat *splat, const double front[4],
                      const double back[4], value_clip *out);
 
-/* The light of the samples of a slab of a phase, from number `n` on, gives way
- * to that of cut faces; returns the number of the one behind them. */
-int snow_value_flatten(const snow_value_splat *splat, const value_slab *slab,
-                       value_queue *queue, int n);
+/* The light of the samples of some phases of a slab gives way to that of cut
+ * faces. */
+void snow_value_flatten(const snow_value_splat *splat, const value_slab *slabs,
+                        int phases, value_queue *queue);
 
 /* Where 32 samples from `n` on meet a surface, of 32768 of a slab. */
 void snow_value_meet(const snow_value_surface *surface,

@@ -141,9 +141,7 @@ typedef struct snow_value_splat {
     double low[2], high[2]; /* the field's ends along u and v */
     const snow_value_labels *labels; /* NULL: values */
     bool labels_nearest;             /* not by membership */
-    const double (*clips)[5]; /* seen is where a u + b v + c slice <= d; [4]: as
-                                 much below it light begins to be that of its
-                                 cut face; 0: none is seen */
+    const double (*clips)[4]; /* seen is where a u + b v + c slice <= d */
     size_t clip_count;
     int slabs[2]; /* that are drawn: slab n is between resampled slices n and n
                      + 1 */
