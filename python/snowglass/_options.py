@@ -62,7 +62,8 @@ class Shot(TypedDict, total=False):
     overlay_look: Any | None
     threads: int | None
     deterministic: bool | None
-    isa: Literal["auto", "scalar", "avx2", "avx512", "neon", "wasm"] | None
+    isa: Literal[
+        "auto", "scalar", "avx2", "avx512", "sse4", "neon", "wasm"] | None
     opacity_length: float | None
     progress: Progress | None
 
@@ -91,7 +92,9 @@ class Data(TypedDict, total=False):
     crop: Points | None
     series: str | int | None
     allow_gaps: bool | None
+    suv: Literal["bw", "lbm", "bsa", "none"] | None
     levels: int | None
+    z_scale: float | str | None
     mask: Path | None
     labels: str | int | None
     label_table: Path | None

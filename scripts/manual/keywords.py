@@ -17,7 +17,7 @@ TYPES = {
     "size": "int | Numbers", "dims": NUMBERS,
     "spacing": f"float | {NUMBERS}", "time": "int", "component": "str | int",
     "channels": "Any", "crop": POINTS,
-    "labels": "str | int", "clip": POINTS,
+    "labels": "str | int", "clip": POINTS, "z_scale": "float | str",
 }
 # Where Python differs: its name, or None, and its type.
 OTHERWISE = {

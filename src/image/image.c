@@ -8,6 +8,8 @@
 
 #include "base/monitor.h"
 
+#include <snowglass/overlay.h>
+
 #include <string.h>
 
 SNOW_RECORD_OF_ZEROS(snow_image_options);
