@@ -63,7 +63,8 @@ typedef struct request {
     transfer_object *transfer;
     snow_layer layers[SNOW_LAYERS_MOST + 1]; /* channels, then an overlay */
     int count, mixing;                       /* of them, of which channels */
-    bool mixed; /* the volume is one of channels, too */
+    bool mixed;   /* the volume is one of channels, too */
+    bool outline; /* of the overlay of a slice, the borders alone */
     double
         shares[SNOW_LAYERS_MOST + 2]; /* of light: the volume's, the layers' */
     snow_view view;
@@ -83,6 +84,20 @@ static snow_status draw_one(const request *r, const snow_volume *volume,
                                          &r->settings, out);
 }
 
+/* Overlays over a slice, whose share of light says whether opacities are
+ * asked. */
+static snow_status lay_over(request *r, int64_t index) {
+    snow_status status = SNOW_STATUS_OK;
+    for (int n = r->mixing; n < r->count && index >= 0 && !status; n++) {
+        const snow_layer *layer = &r->layers[n];
+        status = light_lay_slice(
+            r->volume->context->context, layer->volume, layer->transfer,
+            light_cover(layer->transfer, r->shares[n + 1] > 0, -1, r->outline),
+            r->outline, index, &r->view, &r->settings, &r->image);
+    }
+    return status;
+}
+
 /* A slice, or from -1 a picture: of the volume, or of all channels, whose light
  * adds up. */
 static snow_status draw_apart(request *r, bool added, int64_t index) {
@@ -93,7 +108,7 @@ static snow_status draw_apart(request *r, bool added, int64_t index) {
                  r->transfer ? r->transfer->transfer : NULL, index, &one);
     if (!status && !added) {
         r->image = one;
-        return status;
+        return lay_over(r, index);
     }
     if (!status)
         status = light_add(context, one, r->shares[0], &sum);
@@ -112,7 +127,7 @@ static snow_status draw_apart(request *r, bool added, int64_t index) {
     }
     light_limit(sum);
     r->image = sum;
-    return status;
+    return lay_over(r, index);
 }
 
 static snow_status draw(request *r) {
@@ -424,24 +439,24 @@ static void widen_view(const sheet *s, snow_view *view) {
 }
 
 /* slices(Image, transfer, axis or None, columns, rows, (x, y, z), indices,
- * width, height, settings, layers, whether they are mixed, share, progress) ->
- * (image, places) */
+ * width, height, settings, layers, whether they are mixed, share, whether an
+ * overlay is an outline, progress) -> (image, places) */
 PyObject *volume_slices(PyObject *self, PyObject *args) {
     volume_object *o = (volume_object *)self;
     PyObject *type, *transfer, *settings, *layers, *indices, *out = NULL;
     PyObject *progress;
     double list[10000];
-    int mixed;
+    int mixed, outline;
     request r = {.volume = o};
     sheet s = {.axis = NULL};
     snow_status status = SNOW_STATUS_OK;
     snow_settings_init(&r.settings);
     snow_view_init(&r.view);
-    if (!PyArg_ParseTuple(args, "OO!zii(ddd)OiiOO!pdO", &type, transfer_type,
+    if (!PyArg_ParseTuple(args, "OO!zii(ddd)OiiOO!pdpO", &type, transfer_type,
                           &transfer, &s.axis, &s.columns, &s.rows, &s.at[0],
                           &s.at[1], &s.at[2], &indices, &s.size[0], &s.size[1],
                           &settings, &PyTuple_Type, &layers, &mixed,
-                          &r.shares[0], &progress) ||
+                          &r.shares[0], &outline, &progress) ||
         !record_fill_settings(settings, &r.settings))
         return NULL;
     const Py_ssize_t count = PySequence_Size(indices);
@@ -450,6 +465,7 @@ PyObject *volume_slices(PyObject *self, PyObject *args) {
         return NULL;
     s.indices = list;
     s.count = (int)count;
+    r.outline = outline;
     r.transfer = (transfer_object *)transfer;
     r.mixed = mixed;
     if (!volume_use(o, progress))
@@ -472,23 +488,24 @@ PyObject *volume_slices(PyObject *self, PyObject *args) {
 }
 
 /* slice(Image, axis, index, transfer or None for values, width, height,
- * settings, layers, whether they are mixed, share, marks of a legend or None)
- */
+ * settings, layers, whether they are mixed, share, marks of a legend or None,
+ * whether an overlay is an outline) */
 PyObject *volume_slice(PyObject *self, PyObject *args) {
     volume_object *o = (volume_object *)self;
     PyObject *type, *transfer, *settings, *layers, *marks;
     const char *axis;
     long long index;
-    int width, height, mixed;
+    int width, height, mixed, outline;
     request r = {.volume = o};
     snow_status status = SNOW_STATUS_OK;
     snow_settings_init(&r.settings);
     snow_view_init(&r.view);
-    if (!PyArg_ParseTuple(args, "OsLOiiOO!pdO", &type, &axis, &index, &transfer,
-                          &width, &height, &settings, &PyTuple_Type, &layers,
-                          &mixed, &r.shares[0], &marks) ||
+    if (!PyArg_ParseTuple(args, "OsLOiiOO!pdOp", &type, &axis, &index,
+                          &transfer, &width, &height, &settings, &PyTuple_Type,
+                          &layers, &mixed, &r.shares[0], &marks, &outline) ||
         !record_fill_settings(settings, &r.settings))
         return NULL;
+    r.outline = outline;
     if (PyObject_TypeCheck(transfer, transfer_type))
         r.transfer = (transfer_object *)transfer;
     r.mixed = mixed;

@@ -153,7 +153,7 @@ SNOW_API snow_mode snow_mode_for(const snow_volume_info *info);
 SNOW_API const char *snow_colormap_for(const snow_volume_info *info);
 
 /* The automatic background of a mode, red, green and blue: of projections the
- * lowest colour of the look, black without one. */
+ * lowest colour of the look, black without one; white of a white ground. */
 SNOW_API void snow_mode_background(snow_mode, const snow_transfer *, double[3]);
 
 /* Fits a view's target and zoom to what a look shows from each azimuth (NULL:

@@ -31,14 +31,6 @@ typedef struct channel_set {
 int channels_choose(const options *opts, const snow_volume_info *info,
                     const char *why, channel_set *out);
 
-/* Looks for a white ground, unless it is known (ground.c). */
-void channels_find_ground(const options *opts, const snow_volume_info *info,
-                          channel_set *c);
-
-/* One slice, or up to five of 16 times as many rows and columns: a picture, as
- * the automatic look has it. */
-bool channels_are_picture(const snow_volume_info *info);
-
 /* The note that the first one of a file is drawn alone, and why. */
 void channels_note(const options *opts, const snow_volume_info *info,
                    const char *why);

@@ -1,5 +1,5 @@
-/* light.h - what pictures of several channels are made of, here and in the
- * Python package. */
+/* light.h - what pictures of several channels, and slices with an overlay, are
+ * made of, here and in the Python package. */
 #ifndef PICTURE_LIGHT_H
 #define PICTURE_LIGHT_H
 
@@ -22,6 +22,19 @@ bool light_of_colormap(size_t index, double rgb[3]);
 snow_status light_find_ground(const snow_volume *const parts[3],
                               const double levels[3][2], int64_t index,
                               double *white);
+
+/* What opacities of an overlay are multiplied by in a slice: those of sheets
+ * say little of a single one.  `asked`: some are; a factor (below 0: none) is
+ * the most that it covers. */
+double light_cover(const snow_transfer *transfer, bool asked, double factor,
+                   bool outline);
+
+/* Lays slice `index` of an overlay over the picture of a slice, which is
+ * replaced; with `outline` the borders of its parts alone. */
+snow_status light_lay_slice(snow_context *context, const snow_volume *volume,
+                            const snow_transfer *transfer, double cover,
+                            bool outline, int64_t index, const snow_view *view,
+                            const snow_settings *settings, snow_image **image);
 
 /* Other opacities than those of a look: `points` unless it is NULL, times a
  * factor; of the volume, or of what ranks (comm unless NULL) have parts of.

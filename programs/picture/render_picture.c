@@ -281,7 +281,8 @@ static void describe_squeeze(const render_state *s, char out[160]) {
 }
 
 const snow_transfer *render_state_ground(const render_state *s) {
-    return s->channels.list.count ? NULL : s->transfer;
+    const channel_list *list = &s->channels.list;
+    return list->count && !(list->picks[0].white > 0) ? NULL : s->transfer;
 }
 
 void render_state_choices(const render_state *s, char *out, size_t size) {

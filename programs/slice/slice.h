@@ -3,7 +3,7 @@
  *
  * The header says where slices lie, and one alone is read as a crop, so that
  * its volume may be larger than memory.  Several are cut from the volume in
- * memory. */
+ * memory, or read one by one where that has no room for it. */
 #ifndef SLICE_H
 #define SLICE_H
 
@@ -32,6 +32,7 @@ typedef struct slice_work {
     int size[2];          /* of the picture, or of a frame */
     double strip;         /* of it, that is left to a legend */
     snow_volume *volume;  /* the slice, or all of them */
+    bool in_file;         /* that has no room in memory: each is read alone */
     char *cut;            /* its voxels, if all came through a pipe */
     channel_set channels; /* of colours, the first of which it is */
     snow_transfer *transfer;
@@ -71,9 +72,11 @@ int slice_leave_strip(slice_work *w);
 bool slice_has_colors(const slice_work *w);
 
 /* Looks at the header and finds the slices; reads them, with what lies over
- * them, and makes the look. */
+ * them, and makes the look; reads one of those that stay in their file. */
 int slice_inspect(slice_work *w);
 int slice_read(slice_work *w);
+int slice_read_alone(const slice_work *w, int64_t part, slice_work *out);
+void slice_close_alone(slice_work *w);
 int slice_open_colors(slice_work *w);
 
 /* The look without its opacities, which a slice ignores. */

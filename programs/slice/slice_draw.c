@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <snowglass/overlay.h>
@@ -34,26 +35,68 @@ static snow_status find_view(slice_work *w, int64_t part, snow_view *view,
     return status;
 }
 
-snow_status slice_draw_part(slice_work *w, int64_t part, snow_image **out) {
-    snow_view view;
-    int64_t index;
+static snow_status draw(slice_work *w, int64_t index, const snow_view *view,
+                        snow_image **out) {
     snow_image *image = NULL;
-    const double begin = seconds_now();
-    snow_status status = find_view(w, part, &view, &index);
-    if (status == SNOW_STATUS_OK)
-        status = snow_slice_render(w->volume, index, w->transfer, &view,
-                                   &w->settings, &image);
+    snow_status status = snow_slice_render(w->volume, index, w->transfer, view,
+                                           &w->settings, &image);
     if (status == SNOW_STATUS_OK && w->transfer && w->channels.list.count)
-        status = channels_add_slices(&w->channels, w->context, index, &view,
+        status = channels_add_slices(&w->channels, w->context, index, view,
                                      &w->settings, &image);
     if (status == SNOW_STATUS_OK)
-        status = layers_lay_slice(&w->opts, &w->layers, index, &view,
+        status = layers_lay_slice(&w->opts, &w->layers, index, view,
                                   &w->settings, w->context, &image);
-    w->frame = seconds_now() - begin;
     if (status == SNOW_STATUS_OK)
         *out = image;
     else
         snow_image_free(image);
+    return status;
+}
+
+/* The view of a slice of `from` on that slice, read alone: at the same scale,
+ * whatever the zooms count in. */
+static snow_status find_view_alone(const slice_work *from, slice_work *w,
+                                   snow_view *view) {
+    static const char *const axes[] = {"x", "y", "z"};
+    const snow_view place = w->places[0].view;
+    snow_view whole = place, alone = place;
+    int axis;
+    snow_status status = snow_slice_view(from->context, &from->whole,
+                                         axes[w->axis], &whole, &axis);
+    if (status == SNOW_STATUS_OK)
+        status = snow_slice_view(from->context, snow_volume_get_info(w->volume),
+                                 axes[w->axis], &alone, &axis);
+    alone.zoom *= place.zoom / whole.zoom;
+    *view = alone;
+    return status;
+}
+
+static snow_status draw_from_file(slice_work *w, int64_t part,
+                                  snow_image **out) {
+    slice_work *alone = calloc(1, sizeof *alone); /* large */
+    snow_view view;
+    if (!alone)
+        return SNOW_STATUS_NO_MEMORY;
+    int done = slice_read_alone(w, part, alone);
+    snow_status status =
+        done == CONTINUE ? find_view_alone(w, alone, &view) : (snow_status)done;
+    if (status == SNOW_STATUS_OK)
+        status = draw(alone, 0, &view, out);
+    slice_close_alone(alone);
+    free(alone);
+    return status;
+}
+
+snow_status slice_draw_part(slice_work *w, int64_t part, snow_image **out) {
+    snow_view view;
+    int64_t index;
+    const double begin = seconds_now();
+    if (w->in_file)
+        return draw_from_file(w, part, out);
+    snow_status status = find_view(w, part, &view, &index);
+    if (status == SNOW_STATUS_OK)
+        status = draw(w, index, &view, out);
+    w->frame = seconds_now() - begin;
     return status;
 }
 

@@ -314,7 +314,7 @@ int slice_spread(slice_work *w) {
     else {
         ends[0] = 0;
         ends[1] = w->whole.dims[w->axis] - 1;
-        if (w->transfer)
+        if (w->transfer && !w->in_file)
             done = check_status(
                 w->context,
                 snow_slice_shown(w->volume, w->transfer, w->axis, ends));

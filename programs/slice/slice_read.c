@@ -3,6 +3,7 @@
 #include "picture/outputs.h"
 #include "picture/warnings.h"
 #include "run/log.h"
+#include "run/memory.h"
 #include "slice/slice.h"
 
 #include <stdio.h>
@@ -88,6 +89,27 @@ int slice_inspect(slice_work *w) {
     return done;
 }
 
+/* In memory, or where that has no room, in the file. */
+static int open_several(slice_work *w) {
+    const snow_volume_options data = data_options(&w->opts);
+    memory_plan plan;
+    int done = memory_plan_for(&w->opts, w->path, &data, w->channels.list.count,
+                               false, &plan);
+    if (done != CONTINUE || !plan.streams)
+        return done == CONTINUE
+                   ? open_input(w->context, &w->opts, w->path, &w->volume)
+                   : done;
+    w->in_file = true;
+    if (w->opts.verbosity >= 0 && w->kind == SLICE_GRID && !w->opts.at)
+        say("note: %s stays in its file, since it is larger than the memory: "
+            "the slices are spread over all; --at A:B chooses",
+            w->path);
+    return check_volume(w->context,
+                        snow_volume_open_streamed(w->context, w->path, &data,
+                                                  plan.slab_bytes, &w->volume),
+                        name_of_input(w->path));
+}
+
 static int read_volume(slice_work *w) {
     if (w->volume)
         return w->kind == SLICE_ONE ? cut_slice(w) : CONTINUE;
@@ -96,7 +118,39 @@ static int read_volume(slice_work *w) {
     w->opts.mixes = true;
     if (w->channels.list.count)
         w->opts.channel = w->channels.list.picks[0].index;
-    return open_input(w->context, &w->opts, w->path, &w->volume);
+    return w->kind == SLICE_ONE
+               ? open_input(w->context, &w->opts, w->path, &w->volume)
+               : open_several(w);
+}
+
+int slice_read_alone(const slice_work *w, int64_t part, slice_work *out) {
+    const snow_slice_place *place = &w->places[part];
+    *out = *w;
+    out->kind = SLICE_ONE;
+    out->places = &w->places[part];
+    out->count = 1;
+    out->axis = place->axis;
+    out->opts.size[0] = place->view.width;
+    out->opts.size[1] = place->view.height;
+    out->opts.verbosity = -1; /* it was said before */
+    out->volume = NULL;
+    out->layers = (layers){.whole = &w->whole};
+    memset(out->channels.volumes, 0, sizeof out->channels.volumes);
+    int done = read_volume(out);
+    if (done == CONTINUE && w->transfer)
+        done = check_volume(w->context,
+                            channels_open(&out->opts, w->context, w->path,
+                                          false, 0, &out->channels),
+                            name_of_input(w->path));
+    if (done == CONTINUE)
+        done = layers_open(&out->opts, w->context, out->volume, &out->layers);
+    return done;
+}
+
+void slice_close_alone(slice_work *w) {
+    layers_close(&w->layers);
+    channels_close_volumes(&w->channels);
+    snow_volume_close(w->volume);
 }
 
 /* Labels are drawn as such where nothing else is asked, as in a picture. */

@@ -1,4 +1,4 @@
-"""Turntables."""
+"""Turntables, and movies of slices."""
 from __future__ import annotations
 
 import operator
@@ -49,6 +49,26 @@ def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
     options["overlay"] = overlaid(volume, options.get("overlay"),
                                   options.get("overlay_look"), progress)
     background = options.pop("background", "auto")
+
+    def draw(n: int) -> Any:
+        image = volume._picture(drawn, azimuth=angles[n], azimuths=angles,
+                                quiet=True, **options)
+        image._ranged = True  # the same colours in all frames
+        if n == 0:  # the frame that suits all of them
+            target, options["zoom"] = image._view
+            options["fit"] = "volume"
+            if target and options.get("position") is None:
+                options["target"] = target
+        return image
+
+    write(path, frames, draw, "turntable", fps, overwrite, background, progress)
+
+
+def write(path: str, frames: int, draw: Callable[[int], Any], what: str,
+          fps: float, overwrite: bool, background: Color,
+          progress: Optional[Callable[[str, float], Any]]) -> None:
+    """So many pictures, to files by a pattern or to a movie."""
+    frames, fps = _counts(frames, fps)
     suffix = os.path.splitext(path)[1].lower()
     numbered = re.search(r"%0?\d*d", path)
     if numbered:
@@ -66,19 +86,12 @@ def turntable(volume: Any, path: str, look: Any, frames: int, fps: float,
                          f"files by a pattern such as turn_%04d.png")
     empty = True
     try:
-        for n, angle in enumerate(angles):
-            image = volume._picture(drawn, azimuth=angle, azimuths=angles,
-                                    quiet=True, **options)
-            image._ranged = True  # the same colours in all frames
-            empty = empty and image.stats["empty"]
+        for n in range(frames):
+            image = draw(n)
+            empty = empty and bool(image.stats.get("empty"))
             save(n, image)
-            if n == 0:  # the frame that suits all of them
-                target, options["zoom"] = image._view
-                options["fit"] = "volume"
-                if target and options.get("position") is None:
-                    options["target"] = target
             if progress:
-                progress("turntable", (n + 1) / frames)
+                progress(what, (n + 1) / frames)
     except BaseException:
         getattr(save, "abandon", lambda: None)()
         raise

@@ -21,6 +21,25 @@ class Overlay:
     given: Look
 
 
+@dataclasses.dataclass
+class Lines:
+    """An overlay of slices: `layers` as the core has them, and whether only its
+    borders are drawn."""
+    layers: tuple[tuple[_snowglass.Volume, _snowglass.Transfer, bool, float], ...]
+    outline: bool
+
+
+def over_slices(base: Any, overlay: Any, look: Union[Look, str, None],
+                outline: bool) -> Lines:
+    laid = overlaid(base, overlay, look)
+    if laid is None:
+        if outline:
+            raise TypeError("outline is of an overlay: give one")
+        return Lines((), False)
+    return Lines(((laid.volume, laid.transfer, False,
+                   float(laid.given.opacity is not None)),), bool(outline))
+
+
 def _columns(info: Mapping[str, Any]) -> list[float]:
     return [part for row in info["matrix"] for part in row]
 

@@ -68,7 +68,7 @@ class Volume:
                 indices: Sequence[int], width: int, height: int,
                 settings: Mapping[str, Any],
                 layers: tuple[tuple["Volume", Transfer, bool, float], ...],
-                mixed: bool, share: float, progress: Progress
+                mixed: bool, share: float, outline: bool, progress: Progress
                 ) -> tuple[I, Sequence[tuple[
                     int, int, int, int, int, tuple[str, str, str, str]]]]: ...
     def _slice(self, type: Type[I], axis: str, index: int,
@@ -76,7 +76,7 @@ class Volume:
                settings: Mapping[str, Any],
                layers: tuple[tuple["Volume", Transfer, bool, float], ...],
                mixed: bool, share: float,
-               marks: Optional[tuple[Any, ...]]) -> I: ...
+               marks: Optional[tuple[Any, ...]], outline: bool) -> I: ...
 
 def open(type: Type[V], path: bytes, fields: Mapping[str, Any], clip: Any,
          memory: int, progress: Progress, like: Optional[Volume] = ...) -> V: ...

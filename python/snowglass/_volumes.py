@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Iterator, Literal, Mapping, Optional, \
 
 from . import _arrays, _channels, _checks, _colormaps, _first, _movies, _overlays, \
     _recipes, _snowglass
-from ._images import Image, Path
+from ._images import Color, Image, Path
 from ._looks import Look, colors_are_open, is_ranged, look_of, shows_window
 from ._options import DEFAULTS, Data, Movie, Picture, Shot, Source, Whole
 from ._progress import Progress, progress_of
@@ -518,6 +518,8 @@ class Volume(_snowglass.Volume):
             image._made = (self._source, self._info["unit"],
                            look_of(look), asked)
         self._annotate(image, mode, transfer, look, annotations)
+        if mixture and mixture.white:
+            image._background = (1.0,) * 3
         return image
 
     def _annotations(self, mode: str, letters: bool, legend: Union[bool, str],
@@ -599,7 +601,9 @@ class Volume(_snowglass.Volume):
               look: Union[Look, str, None] = None, *,
               size: Union[int, Sequence[int], None] = None,
               kernel: Optional[str] = None, legend: Union[bool, str] = False,
-              letters: bool = True, threads: int = 0) -> Image:
+              overlay: Any = None, overlay_look: Union[Look, str, None] = None,
+              outline: bool = False, letters: bool = True,
+              threads: int = 0) -> Image:
         """A picture of one slice, in the colours of a look, opaque.
 
         axis    "axial", "coronal" or "sagittal": the axis of the grid that is
@@ -613,6 +617,9 @@ class Volume(_snowglass.Volume):
         size    (width, height), or one number for both: the slice fits; None: a
                 pixel is a voxel, or its smaller side
         kernel  "tent": linear between voxels; "box": the nearest
+        overlay, overlay_look  as of render, but half as opaque at most, unless
+                the look has opacities
+        outline  True: the borders of the overlay's labels or values alone
 
         The patient's left is at the right of axial and coronal pictures, the
         front at the top of axial ones and at the left of sagittal ones.
@@ -623,6 +630,10 @@ class Volume(_snowglass.Volume):
         _check_legend(legend)
         along, index, position = self._find_slice(axis, at)
         alone = self._slice_alone(along, index)
+        if self._info["lengths"] and not isinstance(look, _snowglass.Transfer):
+            given = look_of(look)  # of lengths, which the slice alone is not
+            if not (given.preset or given.colormap or given.colors):
+                look = dataclasses.replace(given, colormap="viridis")
         if not isinstance(look, _snowglass.Transfer):
             look = _colormaps.resolved(alone, look, _chosen(look, "slice"))
         mixture = None
@@ -634,11 +645,15 @@ class Volume(_snowglass.Volume):
         transfer = mixture.transfers[0] if mixture else \
             alone._slice_transfer(look)
         annotations = alone._annotations("slice", letters, legend, mixture)
+        lines = _overlays.over_slices(self, overlay, overlay_look, outline)
+        lines.layers = tuple(
+            (self._slice_alone(along, index, volume), transfer, mixes, share)
+            for volume, transfer, mixes, share in lines.layers)
         image = alone._draw_slice(along, 0, transfer, size,
                                   {"kernel": kernel, "threads": threads}, mixture,
-                                  _marks_of(annotations, "slice", transfer))
+                                  _marks_of(annotations, "slice", transfer), lines)
         image.stats = {"axis": axis, "index": index, "position": position}
-        if not isinstance(look, _snowglass.Transfer):
+        if not isinstance(look, _snowglass.Transfer) and not lines.layers:
             image._made = (self._source, self._info["unit"], look_of(look), {
                 "verb": "slice", "axis": axis.lower(),
                 "at": at if isinstance(at, str) else str(index), "size":
@@ -652,7 +667,9 @@ class Volume(_snowglass.Volume):
                    at: Optional[Sequence[int]] = None,
                    look: Union[Look, str, None] = None, *,
                    size: Union[int, Sequence[int], None] = None,
-                   kernel: Optional[str] = None, letters: bool = True,
+                   kernel: Optional[str] = None, overlay: Any = None,
+                   overlay_look: Union[Look, str, None] = None,
+                   outline: bool = False, letters: bool = True,
                    threads: int = 0, progress: Progress = None) -> Image:
         """A picture of columns times rows slices, with their numbers and one look,
         that of the whole volume; spread evenly over those that show something,
@@ -671,14 +688,18 @@ class Volume(_snowglass.Volume):
                    for n in range(min(count, len(shown)))]
         image = self._draw_sheet("xyz"[along], columns, rows, (0.0,) * 3, indices,
                                  transfer, mixture, look, size, letters,
-                                 {"kernel": kernel, "threads": threads}, progress)
+                                 {"kernel": kernel, "threads": threads},
+                                 _overlays.over_slices(self, overlay, overlay_look,
+                                                       outline), progress)
         image.stats = {"axis": axis, "indices": indices}
         return image
 
     def slice_ortho(self, at: Optional[Sequence[float]] = None,
                     look: Union[Look, str, None] = None, *,
                     size: Union[int, Sequence[int], None] = None,
-                    kernel: Optional[str] = None, letters: bool = True,
+                    kernel: Optional[str] = None, overlay: Any = None,
+                    overlay_look: Union[Look, str, None] = None,
+                    outline: bool = False, letters: bool = True,
                     threads: int = 0, progress: Progress = None) -> Image:
         """The axial, coronal and sagittal slice through a point of the world, or
         the middle, beside one another at one scale, with lines through the
@@ -690,9 +711,50 @@ class Volume(_snowglass.Volume):
         transfer, mixture = self._sheet_look(look)
         image = self._draw_sheet(None, 0, 0, (x, y, z), [0] * 3, transfer, mixture,
                                  look, size, letters,
-                                 {"kernel": kernel, "threads": threads}, progress)
+                                 {"kernel": kernel, "threads": threads},
+                                 _overlays.over_slices(self, overlay, overlay_look,
+                                                       outline), progress)
         image.stats = {"point": (x, y, z), "indices": image.stats["indices"]}
         return image
+
+    def slice_movie(self, path: Path, axis: Union[str, int] = "axial",
+                    at: Optional[Sequence[int]] = None,
+                    look: Union[Look, str, None] = None, *,
+                    frames: Optional[int] = None, fps: float = 30,
+                    size: Union[int, Sequence[int], None] = None,
+                    kernel: Optional[str] = None, legend: Union[bool, str] = False,
+                    overlay: Any = None,
+                    overlay_look: Union[Look, str, None] = None,
+                    outline: bool = False, letters: bool = True,
+                    background: Color = "auto", overwrite: bool = False,
+                    threads: int = 0, progress: Progress = None) -> None:
+        """Pictures of all slices, or of the numbers `at`, or of `frames` of them, in
+        one look, that of the whole volume: files by a pattern such as "s_%03d.png",
+        or a movie, as of Volume.turntable.  The rest is as in Volume.slice."""
+        axis = self._axis_name(axis)
+        along = self._find_slice(axis, None)[0]
+        numbers = range(self._info["dims"][along]) if at is None else at
+        shown = [self._find_slice(axis, n)[1] for n in numbers]
+        if frames is not None:
+            most = _whole("frames", frames, "a number from 1") - 1
+            shown = [shown[round(n * (len(shown) - 1) / most)] for n in
+                     range(frames)] if most else [shown[(len(shown) - 1) // 2]]
+        _check_legend(legend)
+        transfer, mixture = self._sheet_look(look)
+        lines = _overlays.over_slices(self, overlay, overlay_look, outline)
+        annotations = self._annotations("slice", letters, legend, mixture)
+        marks = _marks_of(annotations, "slice", transfer)
+
+        def draw(n: int) -> Image:
+            image = self._draw_slice(along, shown[n], transfer, size,
+                                     {"kernel": kernel, "threads": threads},
+                                     mixture, marks, lines)
+            self._annotate(image, "slice", transfer, look, dict(annotations))
+            image._ranged = True  # the same colours in all frames
+            return image
+
+        _movies.write(os.fspath(path), len(shown), draw, "slices", fps,
+                      overwrite, background, progress_of(progress))
 
     def _sheet_look(self, look: Union[Look, str, None]
                     ) -> tuple[Any, Optional[_channels.Mixture]]:
@@ -708,13 +770,15 @@ class Volume(_snowglass.Volume):
                     at: tuple[float, ...], indices: Sequence[int], transfer: Any,
                     mixture: Optional[_channels.Mixture], look: Any,
                     size: Union[int, Sequence[int], None], letters: bool,
-                    settings: Mapping[str, Any], progress: Progress) -> Image:
+                    settings: Mapping[str, Any], lines: _overlays.Lines,
+                    progress: Progress) -> Image:
         width, height = _sides(0 if size is None else size)
         image, places = self._slices(
             Image, transfer, axis, columns, rows, (at[0], at[1], at[2]), indices,
-            width, height, settings, mixture.layers() if mixture else (),
+            width, height, settings,
+            (mixture.layers() if mixture else ()) + lines.layers,
             mixture is not None, mixture.shares[0] if mixture else 1.0,
-            progress_of(progress))
+            lines.outline, progress_of(progress))
         annotations: dict[str, Any] = {"letters": False, "legend": False}
         if letters:
             annotations["texts"] = _sheet_texts(places, axis is not None)
@@ -748,13 +812,16 @@ class Volume(_snowglass.Volume):
                     size: Union[int, Sequence[int], None],
                     settings: Mapping[str, Any],
                     mixture: Optional[_channels.Mixture] = None,
-                    marks: Optional[tuple[Any, ...]] = None) -> Image:
+                    marks: Optional[tuple[Any, ...]] = None,
+                    lines: _overlays.Lines = _overlays.Lines((), False)) -> Image:
         width, height = _sides(0 if size is None else size)
         first = mixture.volumes[0] if mixture else self
         return first._slice(Image, "xyz"[along], index, transfer, width, height,
-                            settings, mixture.layers() if mixture else (),
+                            settings,
+                            (mixture.layers() if mixture else ()) + lines.layers,
                             mixture is not None,
-                            mixture.shares[0] if mixture else 1.0, marks)
+                            mixture.shares[0] if mixture else 1.0, marks,
+                            lines.outline)
 
     def _slice_alone(self, along: int, index: int,
                      channel: Optional[_snowglass.Volume] = None) -> "Volume":

@@ -153,6 +153,10 @@ snow_status snow_volume_pick_component(snow_context *context,
                                        const snow_volume_options *options,
                                        int64_t count, snow_volume_info *info,
                                        int64_t *out) {
+    /* Three or four bytes are a colour, as napari and ParaView take them. */
+    if (info->type == SNOW_TYPE_UINT8 && (count == 3 || count == 4) &&
+        !options->component)
+        return snow_volume_pick_value(context, options, count, true, info, out);
     info->components = count;
     bool named = options->component && !strcmp(options->component, MAGNITUDE);
     if (named && count < 2)

@@ -109,7 +109,7 @@ const char *snow_colormap_for(const snow_volume_info *given) {
 /* A projection has its lowest value where it meets next to nothing.  The dark
  * sides of a shaded object still stand out from a background that is a little
  * lighter than black.  Both are grey where the picture is, so that it stays a
- * grey file. */
+ * grey file.  What lay on a white ground is dark. */
 void snow_mode_background(snow_mode mode, const snow_transfer *transfer,
                           double rgb[3]) {
     const bool shaded = mode == SNOW_MODE_OVER || mode == SNOW_MODE_ISO;
@@ -119,7 +119,7 @@ void snow_mode_background(snow_mode mode, const snow_transfer *transfer,
         snow_transfer_evaluate(transfer, ends[0], low);
     }
     for (int i = 0; i < 3; i++)
-        rgb[i] = shaded ? DARK : low[i];
+        rgb[i] = !shaded ? low[i] : transfer && transfer->white > 0 ? 1 : DARK;
 }
 
 static const snow_settings defaults = {

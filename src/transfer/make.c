@@ -284,10 +284,16 @@ static snow_status build_look(const snow_histogram *histogram,
         stretch(builder, data ? (snow_scale){points->log, 0} : builder->scale,
                 low, high);
     }
+    const snow_volume_info *info = &histogram->volume->info;
+    const bool linear = look->preset && !strcmp(look->preset, "linear");
     const char *map = look->colormap ? look->colormap : builder->colormap;
-    if (!look->colormap && histogram->volume->info.negative && look->preset &&
-        !strcmp(look->preset, "linear"))
+    if (!look->colormap && info->negative && linear)
         map = "grey_r";
+    /* Lengths of vectors have colours, as in ParaView; those of complex numbers
+     * are MR. */
+    if (!look->colormap && info->magnitude && info->components == 3 &&
+        (linear || !points))
+        map = "viridis";
     if (map && !builder->labels) /* which have taken theirs */
         snow_transfer_builder_colormap(builder, map, builder->low,
                                        builder->high);

@@ -96,3 +96,29 @@ class Overlays(InFolder):
             drawn = self.draw(other)
         other.save("labels.nrrd")
         self.same_floats(drawn, "render", *self.WORDS)
+
+    def test_legends_cover_nothing(self):
+        """50 pictures of 200 to 4000 pixels: boxes of what a legend has drawn, beside
+        the opacity of the picture."""
+        random = numpy.random.default_rng(3)
+        head, labels = sg.Volume("phantom:head", dims=(20, 20, 20)), volume(LABELS)
+        for n in range(50):
+            size = (4000, 700) if n == 0 else (700, 4000) if n == 1 else \
+                tuple(map(int, 200 * 4.5 ** random.random(2)))
+            overlay = {"overlay": "labels.nrrd"} if n % 3 == 1 else {}
+            drawn = (self.base if overlay else labels if n % 3 else head).render(
+                "viridis" if n % 2 or overlay else None, size=size, legend=True,
+                letters=False, quality="draft", azimuth=float(random.uniform(0, 360)),
+                elevation=float(random.uniform(-60, 60)), **overlay)
+            drawn.save("with.png")
+            drawn._annotations = {"letters": False, "legend": False}
+            drawn.save("without.png")
+            shown, plain = (sg.Image.load(path).to_rgb() for path in
+                            ("with.png", "without.png"))
+            marks = (shown != plain).any(-1)
+            rows, columns = numpy.nonzero(marks)
+            self.assertGreater(len(rows), 100, size)
+            box = numpy.asarray(drawn)[rows.min():rows.max() + 1,
+                                       columns.min():columns.max() + 1, -1]
+            self.assertLessEqual(box.max(), 0.02, size)
+            self.assertLess(columns.max() - columns.min(), 0.14 * size[0] + 80, size)

@@ -1,4 +1,5 @@
 """Slices and recipes of the Python package, beside NumPy and the command line."""
+import itertools
 import json
 
 import numpy
@@ -37,6 +38,56 @@ class Slices(InFolder):
                   "slice", "grid.nrrd", "--grid", "3x2", "-s", "300x200")
         self.same(volume.slice_ortho(size=(300, 200)),
                   "slice", "grid.nrrd", "--ortho", "-s", "300x200")
+
+    def test_letters_of_36_grids(self):
+        """Whatever lies where in memory, the patient and the letters are alike."""
+        expected = None
+        for order in itertools.permutations(range(3)):
+            for flips in list(itertools.product((False, True), repeat=3))[1:7]:
+                affine = numpy.diag([0.0, 0, 0, 1])
+                for axis, of in enumerate(order):
+                    back = flips[axis]
+                    affine[2 - of, 2 - axis] = -1.5 if back else 1.5
+                    affine[2 - of, 3] = 1.5 * (self.array.shape[of] - 1) * back
+                array = self.array.transpose(order)[
+                    tuple(slice(None, None, -1 if back else 1) for back in flips)]
+                volume = sg.Volume(numpy.ascontiguousarray(array), affine=affine,
+                                   medical=True)
+                image = volume.slice_ortho((3, 4.5, 3), size=(300, 120))
+                letters = [text[-1] for text in image._annotations["texts"]]
+                self.assertEqual(letters, list("RLAPRLSIAPSI"), (order, flips))
+                expected = numpy.asarray(image) if expected is None else expected
+                numpy.testing.assert_allclose(numpy.asarray(image), expected, atol=1e-4)
+
+    def test_overlays_and_movies(self):
+        labels = (self.array > 500).astype(numpy.uint8)
+        self.volume.save("a.nrrd")
+        sg.Volume(labels, spacing=(1.5, 1.5, 1.5)).save("l.nrrd")
+        volume, over = sg.Volume("a.nrrd"), ["--overlay", "l.nrrd"]
+        for outline in (False, True):
+            words = [*over, *(["--overlay-look", "outline"] * outline)]
+            laid = {"overlay": "l.nrrd", "outline": outline, "size": (160, 120)}
+            with self.subTest(outline=outline):
+                self.same(volume.slice("axial", 3, **laid), "slice", "a.nrrd", "--at",
+                          "3", "-s", "160x120", *words)
+                self.same(volume.slice_grid(2, 2, "coronal", **laid), "slice", "a.nrrd",
+                          "--axis", "coronal", "--grid", "2x2", "-s", "160x120", *words)
+                self.same(volume.slice_ortho(**laid), "slice", "a.nrrd", "--ortho",
+                          "-s", "160x120", *words)
+                self.same_frames(
+                    lambda path, **options: volume.slice_movie(
+                        path, "sagittal", range(1, 6), **laid, **options),
+                    "slice", "a.nrrd", "--axis", "sagittal", "--at", "1:6", "-s",
+                    "160x120", *words)
+        self.same(volume.slice("axial", 3, overlay=labels, size=(160, 120)), "slice",
+                  "a.nrrd", "--at", "3", "-s", "160x120", *over)
+        self.same_frames(lambda path, **options: volume.slice_movie(
+            path, legend=True, size=200, look="viridis", **options),
+                         "slice", "a.nrrd", "-c", "viridis", "-s", "200", "--legend")
+        with self.assertRaisesRegex(TypeError, "outline is of an overlay"):
+            volume.slice(outline=True)
+        with self.assertRaisesRegex(ValueError, "across x: give 0 to 6"):
+            volume.slice_movie("s_%d.png", "x", range(9))
 
     def test_values_are_those_of_the_array(self):
         for axis, expected in [
@@ -113,6 +164,22 @@ class Slices(InFolder):
                                    for each in (volume, sg.Volume("a.mha"))],
                                   "slice", "a.mha", "--axis", axis, "--at", "3",
                                   "--legend", *words)
+
+    def test_lengths_of_vectors_are_in_colours(self):
+        array = numpy.random.default_rng(1).normal(size=(5, 6, 7, 3)).astype("f4")
+        numpy.save("v.npy", array)
+        with self.assertWarnsRegex(sg.SnowglassWarning, "magnitude of the 3"):
+            volume = sg.Volume("v.npy")
+        image = volume.slice("z", 2)
+        rgb = numpy.asarray(image)[::-1, :, :3]
+        self.assertEqual(rgb.shape, (6, 7, 3))
+        length = numpy.linalg.norm(array[2], axis=-1)
+        low, high = rgb.reshape(-1, 3)[[length.argmin(), length.argmax()]]
+        numpy.testing.assert_allclose(low, (0.267, 0.005, 0.329), atol=0.01)
+        numpy.testing.assert_allclose(high, (0.993, 0.906, 0.144), atol=0.01)
+        self.same(image, "slice", "v.npy", "--axis", "z", "--at", "2")
+        self.same(volume.slice_grid(2, 2, "z"), "slice", "v.npy", "--axis", "z", "--grid",
+                  "2x2")
 
     def test_masks_hold_for_the_default_of_a_slice(self):
         mask = (self.array > 300).astype(numpy.uint8)

@@ -131,7 +131,8 @@ if command -v python3 >/dev/null; then
 import struct
 from volumes import npy
 npy("v.npy", "<f4", (4, 4, 4, 3), struct.pack("<192f", *range(192)))
-npy("c.npy", "|u1", (5, 5, 5, 4), bytes(n % 256 for n in range(500)))
+npy("c.npy", "|i1", (5, 5, 5, 4), bytes(n % 256 for n in range(500)))
+npy("b.npy", "|u1", (5, 5, 5, 4), bytes(n % 256 for n in range(500)))
 END
     components() { # FILE TEXT COUNT MAGNITUDE OPTION...
         local file=$1 text=$2 count=$3 magnitude=$4
@@ -146,6 +147,8 @@ END
     components v.npy "3 .these values: component 2." 3 false --component 2
     components c.npy "4 .these values: component 0." 4 false
     components c.npy "4 .these values: component 3." 4 false --channel 3
+    printed "bytes in fours" '^channels  *4 .these values: channel 0.$' "$TOOL" info -q b.npy
+    components b.npy "4 .these values: component 3." 4 false --component 3
     run 0 "a list of vectors" "$TOOL" info -q v.npy c.npy
     prints '^v.npy: npy 4x4x4 float32, .*, 3 components$'
 else

@@ -129,6 +129,22 @@ for axis in z y; do
     check "little of it is read" [ "$(number file)" -lt 20000000 ]
     check "and little memory taken" [ "$(number peak)" -lt 64000000 ]
 done
+# Several slices of what has no room are read one by one, and are the same.
+"$TOOL" phantom head -o big.nrrd --dims 200x180x160 -q
+while read -r how; do
+    run 0 "in memory: $how" "$TOOL" slice big.nrrd -o whole.png -y -q $how
+    run 0 "in the file: $how" "$TOOL" slice big.nrrd -o parts.png -y -q --memory 5M --stats - $how
+    check "in less memory" [ "$(number peak)" -lt 5000000 ]
+    same_file "is the same: $how" whole.png parts.png
+done <<'END'
+--grid 3x2 --at 0:160 -s 300x200
+--ortho --at 10,12.5,9mm -s 400x200
+--grid 2x2 --axis x --at 20:90 --legend -c viridis -s 300
+END
+told "a grid of all" 'big.nrrd stays in its file' "$TOOL" slice big.nrrd -o g.png --grid 2x2 -s 200 --memory 5M
+run 0 "a series in memory" "$TOOL" slice big.nrrd -o w_%d.png -q --axis y --at 0:180:80
+run 0 "and in the file" "$TOOL" slice big.nrrd -o p_%d.png -q --axis y --at 0:180:80 --memory 5M
+same_file "is the same" w_2.png p_2.png
 refused 5 "what does not fit is refused" 'memory' "$TOOL" slice large.raw $raw \
     -o large.png --memory 1M
 told "a slice of labels" 'labels 0\.\.7' "$TOOL" slice seg.nrrd -o seg.png -s 160x160 --legend
