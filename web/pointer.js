@@ -88,11 +88,12 @@ export class Pointer {
      * changes between them are one drag: the look that they change comes late. */
     step(...degrees) {
         const {recipe, page: {tool}} = this;
-        if (this.stepped !== tool || this.last !== recipe.keys)
+        const made = () => [tool, recipe.keys[tool === 'window' ? 'range' : 'opacity'],
+            recipe.keys.channel].join(); // what the viewer adds to it is no change
+        if (this.last !== made())
             this.take();
-        this.stepped = tool;
         this.drag(...degrees.map(x => x * this.box[1] / 180), tool);
-        this.last = recipe.keys;
+        this.last = made();
     }
 
     move(event) {

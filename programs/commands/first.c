@@ -4,6 +4,7 @@
 #include "movie/movie_files.h"
 
 #include <string.h>
+#include <sys/stat.h>
 
 /* Whether options are of a mode, or of opacities, surfaces and light, which are
  * of mode over.  Recipes have all keys, so that values count. */
@@ -21,9 +22,14 @@ static bool is_decided(const options *opts) {
            strcmp(opts->kernel, "box") == 0;
 }
 
+/* Whether the input can be read twice, and is to be shown by what it is. */
 static bool is_open(const options *opts) {
-    return opts->operand_count > 0 && strcmp(opts->operands[0], "-") != 0 &&
-           (strcmp(opts->mode, "mip") == 0 || !is_decided(opts));
+    struct stat what;
+    const char *path = opts->operand_count > 0 ? opts->operands[0] : "-";
+    const bool once = strcmp(path, "-") == 0 ||
+                      (stat(path, &what) == 0 && !S_ISREG(what.st_mode) &&
+                       !S_ISDIR(what.st_mode));
+    return !once && (strcmp(opts->mode, "mip") == 0 || !is_decided(opts));
 }
 
 /* The channel that is drawn alone; a component may be one. */

@@ -377,8 +377,8 @@ NAME = "o.h5:/data/%T/fields/E/x"
 check(NAME)
 check(NAME, ["--time", -1], 10)
 check("o.h5", ["--dataset", "/data/%T/fields/E/x", "--time", 2], 2)
-oracle.tells(NAME, ["--time", 2], times=4, time=2, time_unit="s", quantity="x",
-             value_unit="m kg s^-3 A^-1")
+oracle.tells(NAME, ["--time", 2], times=4, time=2, time_unit="s",
+             quantity="E x", value_unit="V/m")
 oracle.tells("o.h5:/step_%04d/rho", ["--time", 3], times=4, time_value=1000,
              time_unit="step")
 oracle.refuse("o.h5", "no data set has such a name",

@@ -276,7 +276,7 @@ os.remove("stack/s17.tif")
 tifffile.imwrite("i.tif", a, photometric="minisblack")
 shutil.copy("i.tif", "stack/s17.tif")
 oracle.refuse("stack", "must be alike")
-oracle.refuse("none*.tif", "no slices")
+oracle.refuse("none*.tif", "no file matches")
 os.mkdir("empty")
 oracle.refuse("empty", "no slices")
 

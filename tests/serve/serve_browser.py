@@ -155,7 +155,8 @@ def filmed():
     shutil.rmtree(place, ignore_errors=True)
     with tarfile.open(packed) as scan:
         scan.extractall(place)
-    plan("film", os.path.join(place, "ct_abdomen"), copies=(PICTURE, SLICE))
+    plan("film", os.path.join(place, "ct_abdomen"), "-m", "over",
+         copies=(PICTURE, SLICE))
 
 
 def everyday():

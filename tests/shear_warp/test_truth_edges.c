@@ -230,7 +230,7 @@ static void edges_are_as_near_the_truth_as_they_were(void **state) {
         {"sphere, perspective", sphere_from_an_eye, 41.11},
         {"isosurface", isosurface, 36.82},
         {"threshold", threshold, 55.39},
-        {"cut block", cut_block, 46.19},
+        {"cut block", cut_block, 43.39},
         {"thick slices", thick_slices, 48.39},
         {"far value", a_far_value, 47.95},
         {"holes", bitten, 46.08},
