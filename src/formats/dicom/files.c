@@ -448,7 +448,6 @@ static snow_status read_with_siblings(collection *c, snow_source *source,
                                       const snow_volume_options *options,
                                       snow_volume_info *info, snow_volume **out,
                                       bool *done) {
-    const dicom_input input = {c->context, store, c->images, c->image_count};
     const dicom_frame alone = c->frames[0];
     snow_folder files;
     dicom_stack stack;
@@ -456,6 +455,7 @@ static snow_status read_with_siblings(collection *c, snow_source *source,
     const char *path = snow_source_name(source);
     SNOW_TRY(list_siblings(c->context, path, &files));
     snow_status status = add_siblings(c, path, &files);
+    const dicom_input input = {c->context, store, c->images, c->image_count};
     if (status == SNOW_STATUS_OK && c->frame_count > 1)
         status = gather_stack(c, &stack, &made);
     *done = false;

@@ -291,6 +291,7 @@ export async function restarted({check, keys, open, part, rest, folder}) {
     await other.evaluate(() => window.snowglass.recipe.set({azimuth: 11}));
     await page.waitForFunction(() => window.snowglass.recipe.keys.azimuth === 11);
     await other.evaluate(() => window.snowglass.recipe.undo());
+    await page.waitForFunction(() => window.snowglass.recipe.keys.azimuth === 42);
     await other.context().close();
     await end(server);
     await hears('start snowglass serve again');
