@@ -3,7 +3,7 @@
 #define ANSWERS_H
 
 #include "draw/drawing.h"
-#include "outbox.h"
+#include "net/outbox.h"
 #include "state.h"
 
 /* --- description.c ---

@@ -7,8 +7,8 @@
 #ifndef LIVE_H
 #define LIVE_H
 
+#include "net/outbox.h"
 #include "options/options.h"
-#include "outbox.h"
 #include "state.h"
 
 typedef struct live live;

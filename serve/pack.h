@@ -6,7 +6,7 @@
 #ifndef PACK_H
 #define PACK_H
 
-#include "outbox.h"
+#include "net/outbox.h"
 
 #include <snowglass/snowglass.h>
 

@@ -5,7 +5,7 @@
 #define RENDER_H
 
 #include "draw/drawing.h"
-#include "outbox.h"
+#include "net/outbox.h"
 #include "pack.h"
 #include "state.h"
 

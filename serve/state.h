@@ -6,7 +6,7 @@
 #ifndef VIEWER_STATE_H
 #define VIEWER_STATE_H
 
-#include "outbox.h"
+#include "net/outbox.h"
 
 #include <jansson.h>
 #include <stdbool.h>

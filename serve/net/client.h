@@ -7,7 +7,7 @@
 #define CLIENT_H
 
 #include "message.h"
-#include "outbox.h"
+#include "net/outbox.h"
 #include "state.h"
 
 #include <libwebsockets.h>

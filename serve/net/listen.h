@@ -7,8 +7,8 @@
 #define LISTEN_H
 
 #include "net/guard.h"
+#include "net/outbox.h"
 #include "net/sockets.h"
-#include "outbox.h"
 #include "state.h"
 
 #define LISTEN_CLIENTS_MOST 32

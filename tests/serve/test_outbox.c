@@ -1,7 +1,7 @@
 /* tests/serve/test_outbox.c - what waits for the pages. */
 #include "support/support.h"
 
-#include "outbox.h"
+#include "net/outbox.h"
 
 static void wake_nobody(void *user) {
     (void)user;

@@ -1,5 +1,5 @@
 /* outbox.c - implements outbox.h: a list under one lock. */
-#include "outbox.h"
+#include "net/outbox.h"
 
 #include <pthread.h>
 #include <stdlib.h>
