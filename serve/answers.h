@@ -16,9 +16,8 @@ void answer_look(drawing *d, outbox *box);
 void answer_kept(drawing *d, viewer_state *s, uint32_t revision);
 void answer_figures(drawing *d, double hidden, outbox *box);
 
-/* That the file was replaced: once, as `told` has which was told of.  Pages
- * know the volume by what it was: of another file a crop, another time or a
- * clip plane would show voxels. */
+/* Says once that the file was replaced: `told` keeps the identity that was
+ * said last. */
 void answer_replaced(const drawing *d, char told[IDENTITY_BYTES], outbox *box);
 
 /* The step that a simulation has drawn. */

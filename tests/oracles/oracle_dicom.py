@@ -1003,4 +1003,9 @@ for modality, step, words in (("PT", 2, f"grey_r 0..{top}"), ("NM", 2, ""),
     said = oracle.tool("render", folder, "-o", "look.png", "-y", "-s", "60").stderr
     if ("mode mip" in said and words in said) != bool(words):
         oracle.fail(f"a picture of {modality}", said)
+pet()  # nuclear medicine shows 0 to 7 of SUV
+oracle.checked += 1
+said = oracle.tool("render", "pet", "-o", "look.png", "-y", "-s", "60").stderr
+if "grey_r 0..7;" not in said:
+    oracle.fail("a picture of SUV", said)
 oracle.finish()
