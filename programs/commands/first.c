@@ -55,8 +55,9 @@ static uint64_t light_of(const options *opts, const snow_volume_info *info) {
 static range_value range_of_one(const options *opts,
                                 const snow_volume_info *info) {
     const int64_t one = number_of_one(opts);
-    const double *window =
-        one < SNOW_CHANNELS_MAX ? info->channel[one].window : info->window;
+    const double *window = one >= 0 && one < SNOW_CHANNELS_MAX
+                               ? info->channel[one].window
+                               : info->window;
     if (window[0] < window[1])
         return (range_value){SNOW_RANGE_VALUES, window[0], window[1]};
     return (range_value){SNOW_RANGE_SIGNAL, 0, 0};
