@@ -16,6 +16,10 @@
     "is a checkpoint of AMReX, which only its code reads; give a plotfile, " \
     "such as plt00000"
 
+#define AFNI                                                        \
+    "is a header of AFNI, which is not supported; convert it with " \
+    "3dAFNItoNIFTI"
+
 static const struct {
     size_t offset;
     const char *magic;
@@ -54,6 +58,11 @@ static const struct {
     {0, "\nGrid = 1\n", 10,
      "is a file of the hierarchy of Enzo, whose grids on levels are not "
      "supported; make one grid with yt (covering_grid), and save it as .npy"},
+    {0, "mrtrix image\n", 13,
+     "is an image of MRtrix, which is not supported; convert it with mrconvert "
+     "IN.mif OUT.nii.gz"},
+    {0, "\ntype ", 6, AFNI},
+    {0, "type ", 5, AFNI},
     {0, "$MeshFormat", 11, "is a mesh of Gmsh, " MESH},
     {0, "#!TDV", 5, "is a file of Tecplot, mostly " MESH},
     {0, "FoamFile", 8, "is a file of OpenFOAM, " MESH},

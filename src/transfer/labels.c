@@ -10,7 +10,8 @@
  * An overlay is more often labels than a volume alone, and these may be lesions
  * of a few voxels: so are all overlays of five values, and of more, unless
  * they are counts, whose neighbours differ by 1, or noise, whose neighbours
- * differ.  A volume alone of 0 and one value is a mask. */
+ * differ.  A volume alone of 0 and one value is a mask, but not a single
+ * image. */
 #include "transfer/walk.h"
 
 #include <math.h>
@@ -267,6 +268,13 @@ static bool is_mask(const snow_histogram *histogram, const snow_look *look,
             (!s->unlike || 2 * s->counted < s->unlike));
 }
 
+/* A single image: few greys are a drawing, and its sides no surface. */
+static bool is_flat(const snow_volume *volume) {
+    snow_extent whole;
+    snow_volume_find_extent(volume, &whole);
+    return whole.dims[0] == 1 || whole.dims[1] == 1 || whole.dims[2] == 1;
+}
+
 /* A file's labels are known after a pass. */
 static snow_status scan(const snow_histogram *histogram, bool asked,
                         label_scan *s) {
@@ -384,7 +392,7 @@ static const char *reason_of(const label_scan *s, const snow_look *look,
 }
 
 static snow_status build(snow_context *context, const label_scan *s,
-                         const snow_look *look, bool asked,
+                         const snow_look *look, bool asked, bool flat,
                          snow_transfer_builder *b) {
     SNOW_TRY(SNOW_RESERVE(context, b->labels, 0, s->count));
     b->label_count = s->count;
@@ -399,6 +407,7 @@ static snow_status build(snow_context *context, const label_scan *s,
     b->name = "labels";
     b->preset = "labels";
     b->reason = reason_of(s, look, asked);
+    b->unshaded = flat;
     return SNOW_STATUS_OK;
 }
 
@@ -437,8 +446,10 @@ snow_status snow_transfer_builder_labels(const snow_histogram *histogram,
             volume->info.estimate ||
             snow_are_hounsfield(&volume->info, histogram->min, histogram->max);
         bool found = is_few(s) || is_mask(histogram, look, s);
-        if (can && (asked || s->labelled || (found && !measured)))
-            status = build(context, s, look, asked, builder);
+        bool flat = is_flat(volume);
+        bool may = !measured && (look->overlay || !flat);
+        if (can && (asked || s->labelled || (found && may)))
+            status = build(context, s, look, asked, flat, builder);
         else if (asked)
             status = fail_labels(volume, s, !whole);
     }

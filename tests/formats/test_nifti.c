@@ -439,6 +439,14 @@ static void cal_min_and_cal_max_are_the_window(void **state) {
     }
 }
 
+static void cifti_is_no_volume(void **state) {
+    for (int version = 1; version <= 2; version++) {
+        file f = make_file(version, false);
+        put_code(&f, 68, 504, 3006); /* dense scalars */
+        support_bad_bytes(*state, "a.nii", f.bytes, f.size, "wb_command");
+    }
+}
+
 static void gzip_is_verified_to_its_last_byte(void **state) {
     support_files *files = *state;
     file f = make_file(1, false);
@@ -651,6 +659,7 @@ int main(void) {
         SUPPORT_TEST(headers_that_lie_are_refused),
         SUPPORT_TEST(wrong_bits_leave_the_type),
         SUPPORT_TEST(cal_min_and_cal_max_are_the_window),
+        SUPPORT_TEST(cifti_is_no_volume),
         SUPPORT_TEST(gzip_is_verified_to_its_last_byte),
         SUPPORT_TEST(a_packed_size_that_lies_is_refused_early),
         SUPPORT_TEST(pairs_open_by_either_file),

@@ -18,6 +18,7 @@ import dicom_sets
 from dicom_sets import (RAS, ExplicitVRBigEndian, ExplicitVRLittleEndian,
                         ImplicitVRLittleEndian, blank, fill, holds, packed,
                         pydicom, run_lengths, write)
+from pydicom.pixel_data_handlers.util import convert_color_space
 from pydicom.uid import JPEG2000Lossless, JPEGBaseline8Bit
 
 try:
@@ -749,16 +750,24 @@ for planar in (0, 1):
 oracle.refuse("rgb.dcm", "channel 3 does not exist", ["--channel", 3], 2)
 rgb.PhotometricInterpretation = "YBR_FULL"
 write("ybr.dcm", rgb)
-oracle.expect("ybr.dcm", colour[None, ..., 0], grid((0.5, 0.75, 9), (0, 0, 0)),
-              name="brightness of YBR_FULL")
-oracle.says("YBR_FULL", "ybr.dcm", "channel 0 is the brightness")
+
+
+def expect_ybr(samples, name):
+    """Y, Cb, Cr of a pixel are red, green, blue."""
+    want = convert_color_space(samples, "YBR_FULL", "RGB")
+    for channel in range(3):
+        oracle.expect("ybr.dcm", want[None, ..., channel],
+                      grid((0.5, 0.75, 9), (0, 0, 0)), ["--channel", channel],
+                      name=f"{name} {channel}")
+
+
+expect_ybr(colour, "YBR_FULL")
 plain = rgb.PixelData
 write("ybr.dcm", packed(rgb, [b"\xff\xd8" + bytes(40)], JPEGBaseline8Bit))
 if GDCM:
     oracle.refuse("ybr.dcm", "do not begin like those")
 write("ybr.dcm", run_lengths(rgb, [colour]))
-oracle.expect("ybr.dcm", colour[None, ..., 0], grid((0.5, 0.75, 9), (0, 0, 0)),
-              name="brightness of YBR_FULL in run lengths")
+expect_ybr(colour, "YBR_FULL in run lengths")
 rgb.file_meta.TransferSyntaxUID = ExplicitVRLittleEndian
 rgb.PixelData = plain
 rgb["PixelData"].is_undefined_length = False
@@ -771,11 +780,7 @@ rgb.Columns = 4
 for data, whole in ((pairs, spread), (colour[:, :4], colour[:, :4])):
     rgb.PixelData = data.tobytes()
     write("ybr.dcm", rgb)
-    for channel in range(3):
-        oracle.expect("ybr.dcm", whole[None, ..., channel],
-                      grid((0.5, 0.75, 9), (0, 0, 0)), ["--channel", channel],
-                      name=f"YBR_FULL_422 {data.size}")
-oracle.says("YBR_FULL_422", "ybr.dcm", "channel 0 is the brightness")
+    expect_ybr(whole, f"YBR_FULL_422 {data.size}")
 rgb.PixelData = pairs.tobytes()[:-2]
 write("ybr.dcm", rgb)
 oracle.refuse("ybr.dcm", "have 46 bytes, not the 48")
@@ -798,9 +803,7 @@ if GDCM and Image:
         rgb.Rows = rgb.Columns = 16
         rgb.PhotometricInterpretation = kind
         write("ybr.dcm", packed(rgb, [stream.getvalue()], JPEGBaseline8Bit))
-        oracle.expect("ybr.dcm", np.asarray(photo)[None, ..., 0],
-                      grid((0.5, 0.75, 9), (0, 0, 0)),
-                      name=f"brightness of {kind} in JPEG")
+        expect_ybr(np.asarray(photo), f"{kind} in JPEG")
 
 
 def palette(first=0, count=256, bits=16, words=True, **tags):

@@ -15,7 +15,15 @@ for order in "CF":
         a = oracle.sample("<u2", shape)
         np.save("a.npy", np.array(a, order=order))
         oracle.expect("a.npy", a.reshape((1,) * (3 - a.ndim) + a.shape),
+                      np.diag((1, -1, -1, 1)) if a.ndim < 3 else None,
                       name=f"{shape} {order}")
+    for samples in (3, 4):  # colours, as matplotlib's imshow has them
+        a = oracle.sample("u1", (9, 10, samples))
+        np.save("a.npy", np.array(a, order=order))
+        for channel in range(samples):
+            oracle.expect("a.npy", a[None, ..., channel],
+                          np.diag((1, -1, -1, 1)), ["--channel", channel],
+                          name=f"picture of {samples} {order}")
     a = oracle.sample("<f4", (3, 5, 6, 7))
     b = oracle.sample("<i2", (3, 2, 5, 6, 7))
     np.save("a.npy", np.array(a, order=order))

@@ -221,6 +221,21 @@ static void few_values_alone_are_not(void **state) {
     }
 }
 
+/* Few greys of a single image are a drawing, labels only where asked. */
+static void a_single_image_has_none(void **state) {
+    static uint8_t voxels[SIDE * SIDE];
+    looks_fixture *f = *state;
+    for (int at = 0; at < SIDE * SIDE; at++)
+        voxels[at] = at / 16 % 2 ? 255 : 0;
+    const snow_volume_info info = {.dims = {SIDE, SIDE, 1},
+                                   .type = SNOW_TYPE_UINT8};
+    const snow_volume *image = looks_volume(f, info, voxels);
+    assert_false(are_labels(f, image));
+    snow_transfer *asked = looks_of(f, image, (snow_look){.preset = "labels"});
+    assert_non_null(snow_transfer_label(asked, 0));
+    assert_true(snow_transfer_is_unshaded(asked));
+}
+
 /* --- files ---------------------------------------------------------------- */
 
 #define NRRD                                                        \
@@ -342,6 +357,7 @@ int main(void) {
         LOOKS_TEST(labels_may_be_floats),
         LOOKS_TEST(what_is_not_labelled_is_hidden),
         LOOKS_TEST(few_values_alone_are_not),
+        LOOKS_TEST(a_single_image_has_none),
         cmocka_unit_test(segments_of_slicer_are_read),
         cmocka_unit_test(wrong_segments_are_not_read),
         cmocka_unit_test(tables_are_read),

@@ -408,8 +408,11 @@ typedef struct dicom_words {
  * each. */
 uint64_t snow_dicom_frame_bytes(const dicom_image *image);
 
+/* Returns whether the bytes of Y, Cb, Cr become red, green, blue. */
+bool snow_dicom_is_ybr(const dicom_image *image);
+
 /* Reads a frame's words in the machine's byte order into `out`, of the size
- * above. Errors: SNOW_STATUS_BAD_INPUT (truncated, damaged, or an unknown
+ * above; colours are red, green, blue. Errors: SNOW_STATUS_BAD_INPUT (truncated, damaged, or an unknown
  * compression), SNOW_STATUS_NO_MEMORY. */
 snow_status snow_dicom_read_words(dicom_reader *reader,
                                   const dicom_image *image, int64_t number,

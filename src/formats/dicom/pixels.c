@@ -11,6 +11,7 @@
 #include "base/module.h"
 #include "formats/dicom/gdcm_bridge.h"
 
+#include <math.h>
 #include <string.h>
 
 #define RUN_LENGTHS "1.2.840.10008.1.2.5"
@@ -345,6 +346,29 @@ static snow_status read_packed(dicom_reader *reader, const dicom_image *image,
     return status;
 }
 
+static unsigned char byte_of(double value) {
+    return (unsigned char)fmin(fmax(floor(value + 0.5), 0), 255);
+}
+
+/* Bytes of Y, Cb, Cr as red, green, blue (PS3.3, C.7.6.3.1.2; ITU-T T.871). */
+static void make_rgb(unsigned char *out, uint64_t pixels, bool planes) {
+    const uint64_t step = planes ? 1 : 3, apart = planes ? pixels : 1;
+    for (uint64_t i = 0; i < pixels; i++) {
+        unsigned char *at = out + step * i;
+        double y = at[0], cb = at[apart] - 128.0, cr = at[2 * apart] - 128.0;
+        at[0] = byte_of(y + 1.402 * cr);
+        at[apart] = byte_of(y - 0.114 * 1.772 / 0.587 * cb -
+                            0.299 * 1.402 / 0.587 * cr);
+        at[2 * apart] = byte_of(y + 1.772 * cb);
+    }
+}
+
+bool snow_dicom_is_ybr(const dicom_image *image) {
+    return image->samples == 3 && image->allocated == 8 &&
+           (!strcmp(image->photometric, "YBR_FULL") ||
+            !strcmp(image->photometric, "YBR_FULL_422"));
+}
+
 snow_status snow_dicom_read_words(dicom_reader *reader,
                                   const dicom_image *image, int64_t number,
                                   void *out, dicom_words *words) {
@@ -359,10 +383,16 @@ snow_status snow_dicom_read_words(dicom_reader *reader,
     if (!pixels)
         return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
                          "has no pixels; it is truncated");
+    if (reader->packed)
+        SNOW_TRY(read_packed(reader, image, pixels, number, out, words));
+    else
+        SNOW_TRY((single ? read_bits : read_plain)(reader, image, pixels,
+                                                   number, out));
+    if (snow_dicom_is_ybr(image))
+        make_rgb(out, (uint64_t)image->columns * (uint64_t)image->rows,
+                 words->planes);
     if (!reader->packed)
-        return (single ? read_bits : read_plain)(reader, image, pixels, number,
-                                                 out);
-    SNOW_TRY(read_packed(reader, image, pixels, number, out, words));
+        return SNOW_STATUS_OK;
     if (words->stored < 1 || words->stored > image->allocated ||
         words->high < words->stored - 1 || words->high >= image->allocated)
         return snow_dicom_fail_unpack(reader->context, reader->syntax);

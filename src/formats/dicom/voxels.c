@@ -6,7 +6,7 @@
  * Values stay as stored, with one scale for all.  They become floats if there
  * is padding, which becomes NaN, if slices differ in scale, and if slices are
  * interpolated, missing or cut. Palette colours are replaced by their
- * brightness; of YBR_FULL the first sample is the brightness.
+ * brightness.
  *
  * A file stays open until another is needed. */
 #include "base/minmax.h"
@@ -402,19 +402,18 @@ static void warn_about_volume(snow_context *context, const dicom_stack *stack,
         snow_notify(context, "a rescale slope of 0 is not possible; 1 is used");
 }
 
-/* The two transforms of JPEG 2000 are undone with its compression. */
+/* The two transforms of JPEG 2000 are undone with its compression, that of
+ * JPEG by the reader of pixels. */
 static bool is_rgb(const dicom_image *image) {
     return !strcmp(image->photometric, "RGB") ||
            !strcmp(image->photometric, "YBR_RCT") ||
-           !strcmp(image->photometric, "YBR_ICT");
+           !strcmp(image->photometric, "YBR_ICT") || snow_dicom_is_ybr(image);
 }
 
 /* Colours are selected with --channel, except palette colours. */
 static snow_status check_colors(snow_context *context,
                                 const dicom_image *image) {
-    const bool ybr = !strcmp(image->photometric, "YBR_FULL") ||
-                     !strcmp(image->photometric, "YBR_FULL_422");
-    if (image->samples != 1 && !ybr && !is_rgb(image))
+    if (image->samples != 1 && !is_rgb(image))
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
             "its colours are %.16s with %d values per pixel, which is not "
@@ -428,9 +427,6 @@ static snow_status check_colors(snow_context *context,
                     "its pixels have %llu bytes more than its rows and "
                     "columns; these are not used",
                     (unsigned long long)image->more);
-    if (ybr && image->samples > 1)
-        snow_notify(context, "its colours are %s; channel 0 is the brightness",
-                    image->photometric);
     return SNOW_STATUS_OK;
 }
 

@@ -94,6 +94,8 @@ size_t nifti_header_size(const unsigned char *bytes, size_t size) {
 #define INTENT_VECTOR 1007
 #define INTENT_RGB 2003
 #define INTENT_RGBA 2004
+#define INTENT_CIFTI 3000 /* the first of CIFTI's, */
+#define INTENT_LAST 3099  /* and the last */
 
 /* In the order of the members above, from the comments of nifti1.h and
  * nifti2.h; version 2 widens most fields and moves all. */
@@ -134,6 +136,7 @@ static void read_fields(const unsigned char *bytes, nifti_header *header) {
         (intent >= INTENT_CORRELATION && intent <= INTENT_LOG10PVAL);
     header->vectors = intent == INTENT_DISPLACEMENT || intent == INTENT_VECTOR;
     header->colors = intent == INTENT_RGB || intent == INTENT_RGBA;
+    header->surfaces = intent >= INTENT_CIFTI && intent <= INTENT_LAST;
     /* FSL keeps components where time is. */
     if ((header->vectors || header->colors) && header->dim[0] == 4 &&
         header->dim[4] == (intent == INTENT_RGBA ? 4 : 3)) {
@@ -184,6 +187,12 @@ static snow_status read_offset(snow_context *context,
 
 /* Checks each axis; the products are checked where the bytes are counted. */
 static snow_status check_dims(snow_context *context, nifti_header *header) {
+    if (header->surfaces)
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "is a CIFTI file: values of a surface's points; "
+                         "write those of its volume, if it has one, with "
+                         "wb_command -cifti-separate IN COLUMN -volume-all "
+                         "OUT.nii.gz");
     if (header->dim[0] < 1 || header->dim[0] > 7)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "%lld axes are not possible (dim[0]); NIfTI has 1 "

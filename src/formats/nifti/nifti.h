@@ -49,6 +49,7 @@ typedef struct nifti_header {
     const nifti_type *type;
     bool labels, vectors, estimate; /* intent_code says that values are */
     bool colors;                    /* of single channels: red, green, blue */
+    bool surfaces;                  /* values of no volume: CIFTI */
     double pixdim[8]; /* [0] is qfac, the sign of the third axis */
     uint64_t vox_offset;
     double slope, intercept;

@@ -5,6 +5,8 @@
  *
  *     (y, x)   (z, y, x)   (time, z, y, x)   (time, channel, z, y, x)
  *
+ * Bytes of (y, x, 3) or (y, x, 4) are colours.  Pictures have row 0 at the top.
+ *
  * The same array gives the same volume in C and in Fortran order, which is only
  * the order in the file.  Half floats become float32 and booleans uint8,
  * exactly; complex numbers, objects and records are refused. */
@@ -51,6 +53,12 @@ static bool lay_out(const npy_header *header, size_t value, layout *out) {
     return true;
 }
 
+/* Returns whether three axes are those of a picture in colours. */
+static bool is_coloured(snow_type type, int axes, const int64_t *size) {
+    return type == SNOW_TYPE_UINT8 && axes == 3 &&
+           (size[0] == 3 || size[0] == 4) && size[1] > 8 && size[2] > 8;
+}
+
 /* A file written by numpy.savez is a zip archive of .npy files. */
 static snow_status refuse_archive(snow_source *source) {
     char bytes[2];
@@ -91,10 +99,13 @@ static snow_status read_npy(snow_source *source,
     array.all = lay.all;
     /* Finds x, y and z, and the requested component or channel and time step.
      */
-    static const snow_axis_hint none[NPY_MOST_AXES];
+    const snow_axis_hint hints[NPY_MOST_AXES] = {
+        {.components = is_coloured(info->type, header.axes, lay.size)}};
     int64_t channel;
     snow_axes roles;
-    snow_axes_assign(header.axes, lay.size, none, &roles);
+    snow_axes_assign(header.axes, lay.size, hints, &roles);
+    if (roles.space[1] >= 0 && roles.space[2] < 0)
+        snow_image_turn(info->matrix);
     SNOW_TRY(snow_volume_pick_axes(context, options, &roles, lay.size, info,
                                    &channel));
     snow_array_place(&roles, lay.step, channel, info, &array);
