@@ -7,6 +7,8 @@ import numpy as np
 
 import snowglass as sg
 
+if len(sys.argv) != 2:
+    sys.exit(__doc__)
 SIDE = 64
 
 # A ball of values that fall from its middle, [z, y, x].

@@ -55,6 +55,7 @@ _snowglass() {
     *)
         [ "$COMP_CWORD" -ne 1 ] || words='@names@'
         [ "$COMP_CWORD" -ne 2 ] || words=$names
+        [ "$verb ${COMP_WORDS[2]} $COMP_CWORD" != 'tf show 3' ] || words='@presets@'
         mapfile -t COMPREPLY < <(compgen -f -- "$cur")
         compopt -o filenames 2>/dev/null ;;
     esac
@@ -86,7 +87,8 @@ def bash_verb(table, verb):
 def bash(table):
     verbs = names(table["verbs"])
     return [filled(
-        BASH, origin=ORIGIN, phantoms=phantoms(table), names=" ".join(verbs),
+        BASH, origin=ORIGIN, phantoms=phantoms(table),
+        presets=" ".join(names(table["presets"])), names=" ".join(verbs),
         pattern=" | ".join(verbs),
         arguments="\n".join(bash_argument(table, option)
                             for option in table["options"] if takes_word(option)),
@@ -163,6 +165,9 @@ def zsh_verb(table, verb):
     return (f"    {verb['name']})\n        _arguments -s -S : $ranks \\\n" +
             "".join(zsh_option(table, option) for option in taken(table, verb)) +
             (f"            '1:word:({' '.join(words)})' \\\n" if words else "") +
+            ("            '2:preset or file:{ compadd -- "
+             f"{' '.join(names(table['presets']))}; _files }}' \\\n"
+             if verb["name"] == "tf" else "") +
             "            '*:input:_snowglass_inputs' ;;")
 
 
@@ -200,6 +205,11 @@ function __snowglass_second
     test (count (commandline -opc)) -eq 2
     and test (__snowglass_verb) = $argv[1]
 end
+function __snowglass_shows
+    set -l typed (commandline -opc)
+    test (count $typed) -eq 3; and test "$typed[2..3]" = 'tf show'
+end
+complete -c snowglass -n __snowglass_shows -a '@presets@'
 complete -c snowglass -a '@phantoms@'"""
 
 
@@ -243,6 +253,7 @@ def fish_verb(table, verb):
 
 def fish(table):
     out = [filled(FISH, origin=ORIGIN, names=" ".join(names(table["verbs"])),
+                  presets=" ".join(names(table["presets"])),
                   phantoms=phantoms(table, "phantom:"))]
     for verb in table["verbs"]:
         out += fish_verb(table, verb)

@@ -130,6 +130,7 @@ check "bash: a preset" offers ct-bones snowglass a.nrrd --preset ct-bones
 check "bash: a type" offers "uint8 uint16 uint32 uint64" snowglass a.raw --type ui
 check "bash: a topic" offers camera snowglass help cam
 check "bash: a phantom" offers engine snowglass phantom : en
+check "bash: a preset to show" offers ct-muscle snowglass tf show ct-mu
 check "bash: a file" offers some.nrrd snowglass render so
 check "bash: an option without value is none's" offers some.nrrd \
     snowglass render --legend so
@@ -167,6 +168,8 @@ if have zsh; then
         'snowglass render a --enc'
     check "zsh: a choice" zsh_gives 'snowglass a --encoding bitmap ' \
         'snowglass a --encoding bi'
+    check "zsh: a preset to show" zsh_gives 'snowglass tf show ct-muscle ' \
+        'snowglass tf show ct-mu'
     check "zsh: an option of its verb alone" zsh_gives 'snowglass info a --enc>' \
         'snowglass info a --enc'
 else
@@ -185,6 +188,7 @@ if have fish; then
     check "fish: an option" fish_offers --encoding 'snowglass render a --enc'
     check "fish: choices" fish_offers 'auto bitmap crs rle' \
         'snowglass a --encoding '
+    check "fish: a preset to show" fish_offers ct-muscle 'snowglass tf show ct-mu'
     check "fish: an option of its verb alone" fish_offers "" \
         'snowglass info a --enc'
     check "fish: an option is described" fish_describes "speed or quality" \

@@ -7,7 +7,8 @@ BUILD=$2 PACKAGING=$3/packaging CMAKE_FILES=("$3/CMakeLists.txt" "$3"/*/CMakeLis
     "$3"/*/*/CMakeLists.txt "$3"/cmake/*.cmake)
 version=$("$TOOL" --version | grep -oE '[0-9]+[.][0-9]+[.][0-9]+')
 series=${version%.*}
-for file in spack/package.py conda/meta.yaml container/Containerfile debian/changelog; do
+for file in spack/package.py conda/meta.yaml container/Containerfile debian/changelog \
+        ../CITATION.cff; do
     check "$file is of this version" grep -q "$version" "$PACKAGING/$file"
 done
 
