@@ -128,15 +128,21 @@ static PyObject *movie_new(PyObject *module, PyObject *args) {
     return PyCapsule_New(movie, NAME, end_movie);
 }
 
-/* recipe(movie, its JSON text) */
+/* recipe(movie, its JSON text, its output or None): collective */
 static PyObject *movie_recipe(PyObject *module, PyObject *args) {
     PyObject *capsule;
-    const char *text;
+    const char *text, *output;
     (void)module;
-    if (!PyArg_ParseTuple(args, "Os", &capsule, &text) || !movie_of(capsule))
+    if (!PyArg_ParseTuple(args, "Osz", &capsule, &text, &output) ||
+        !movie_of(capsule))
         return NULL;
     snow_insitu *movie = movie_of(capsule);
-    const snow_status status = snow_recipe_apply_text(movie, text);
+    snow_status status = snow_recipe_apply_text(movie, text);
+    Py_BEGIN_ALLOW_THREADS;
+    status = snow_comm_agree_status(snow_insitu_comm(movie), status);
+    if (status == SNOW_STATUS_OK && output)
+        status = snow_insitu_try_output(movie, output);
+    Py_END_ALLOW_THREADS;
     return answer(status, snow_context_message(context_of(movie)));
 }
 
@@ -157,27 +163,30 @@ static PyObject *movie_grid(PyObject *module, PyObject *args) {
                   snow_insitu_message(movie));
 }
 
-/* brick(movie, id, first, count, halo, type, address, strides): all along x, y,
- * z; the address is that of the first voxel behind the halo, strides are in
- * values. */
+/* brick(movie, id, first, count, cells, halo, type, address, strides): all
+ * along x, y, z, the halo of the lower sides first; the address is that of the
+ * first voxel behind it, strides are in values. */
 static PyObject *movie_brick(PyObject *module, PyObject *args) {
     PyObject *capsule;
     int id;
-    long long f[3], c[3], h, s[3];
+    long long f[3], c[3], w[3], l[3], u[3], s[3];
     unsigned long long address;
     const char *type;
     (void)module;
-    if (!PyArg_ParseTuple(args, "Oi(LLL)(LLL)LsK(LLL)", &capsule, &id, &f[0],
-                          &f[1], &f[2], &c[0], &c[1], &c[2], &h, &type,
-                          &address, &s[0], &s[1], &s[2]) ||
+    if (!PyArg_ParseTuple(args, "Oi(LLL)(LLL)(LLL)(LLL)(LLL)sK(LLL)", &capsule,
+                          &id, &f[0], &f[1], &f[2], &c[0], &c[1], &c[2], &w[0],
+                          &w[1], &w[2], &l[0], &l[1], &l[2], &u[0], &u[1],
+                          &u[2], &type, &address, &s[0], &s[1], &s[2]) ||
         !movie_of(capsule))
         return NULL;
     const int64_t first[3] = {f[0], f[1], f[2]}, count[3] = {c[0], c[1], c[2]};
     const int64_t strides[3] = {s[0], s[1], s[2]};
-    const snow_halo halo = {{h, h, h}, {h, h, h}};
+    const int64_t cells[3] = {w[0], w[1], w[2]};
+    const snow_halo halo = {{l[0], l[1], l[2]}, {u[0], u[1], u[2]}};
     snow_insitu *movie = movie_of(capsule);
-    snow_status status =
-        snow_insitu_set_brick(movie, id, first, count, h > 0 ? &halo : NULL);
+    snow_status status = snow_insitu_set_brick(movie, id, first, count, &halo);
+    if (status == SNOW_STATUS_OK)
+        status = snow_insitu_set_cells(movie, id, cells);
     if (status == SNOW_STATUS_OK && count[0] * count[1] * count[2] > 0)
         status =
             snow_insitu_set_voxels(movie, id, snow_type_from_name(type),

@@ -41,7 +41,7 @@ set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
     test_guard test_live_file test_mask test_message test_npy_pfm test_pictures test_png test_recipe test_save
     test_source test_tf test_volume test_writer test_writer_named)
 set(SNOW_LABEL_threads test_affinity test_same_bits test_combine test_comm
-    test_pipeline test_frames test_insitu test_insitu_levels test_insitu_marks
+    test_pipeline test_frames test_insitu test_insitu_levels test_insitu_marks test_insitu_output
     test_raycast test_shear_warp test_shear_warp_slabs test_simulated test_stop test_progress test_ranks test_ranks_open test_redistribute
     test_pool_signals serve_hostile serve_places serve_sockets)
 set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture

@@ -31,6 +31,7 @@ typedef struct snow_image_options {
     const snow_overlay *overlay; /* PNG, WebP, JPEG: over it, of its size */
     const snow_image *depth;     /* EXR: channel Z; NULL: none, as the others */
     const char *comment;         /* PNG: a text "Snowglass"; it is not drawn */
+    bool unsynced;               /* does not wait for the disk */
 } snow_image_options;
 SNOW_RECORD(snow_image_options);
 /* Writes .png, .webp, .jpg, .jpeg (levels; JPEG on black without `flatten`),

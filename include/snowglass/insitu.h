@@ -100,7 +100,7 @@ SNOW_RECORD(snow_insitu_annotations);
 typedef struct snow_insitu_settings {
     size_t size;
     const char *output; /* where a step writes, with one %d (or %04d) */
-    const snow_image_options *image; /* with output; NULL: the default */
+    const snow_image_options *image; /* NULL: with output, the default */
     const snow_look *look;
     const snow_view *view;
     const snow_settings *picture;
@@ -111,10 +111,15 @@ typedef struct snow_insitu_settings {
     const snow_ranks_options *ranks;
     const snow_insitu_work *work;
     const snow_insitu_limits *limits;
+    bool sync; /* with output or image: a step waits for the disk */
 } snow_insitu_settings;
 SNOW_RECORD(snow_insitu_settings);
 SNOW_API snow_status snow_insitu_set(
     snow_insitu *insitu, const snow_insitu_settings *settings);
+/* Collective. Whether rank 0 can write pictures there (NULL: the output that is
+ * set), before any is drawn. Errors: BAD_OUTPUT (no folder), BAD_USAGE. */
+SNOW_API snow_status snow_insitu_try_output(
+    snow_insitu *insitu, const char *output);
 /* The time of the next step, which annotations may have. */
 SNOW_API snow_status snow_insitu_set_time(
     snow_insitu *insitu, double time, const char *unit);

@@ -49,6 +49,7 @@ typedef struct snow_recipe {
     const char *channels, *steps; /* of the tool: --channel, --time; or NULL */
     const char *grid; /* of the tool's slices, as is `ortho` */
     bool ortho;
+    bool sync; /* in situ, as in snow_insitu_settings */
 } snow_recipe;
 SNOW_RECORD(snow_recipe);
 

@@ -56,6 +56,23 @@ def _whole(name: str, given: Any, least: int = 0, bits: int = 31) -> int:
     return number
 
 
+def _sides(halo: Any) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Layers before and behind along x, y, z: of one number for all sides, or of
+    three along the axes, each a number or a pair."""
+    try:
+        axes = [halo] * 3 if isinstance(halo, (str, bytes)) else list(halo)
+    except TypeError:
+        axes = [halo] * 3
+    pairs = [tuple(axis) if isinstance(axis, (tuple, list)) else (axis, axis)
+             for axis in axes]
+    if [len(pair) for pair in pairs] != [2, 2, 2]:
+        raise TypeError(f"halo: give a whole number, or three along x, y, z, each a "
+                        f"number or a pair (before, behind), not {halo!r}")
+    low, high = (tuple(_whole("halo", pair[side]) for pair in pairs)
+                 for side in range(2))
+    return low, high
+
+
 class Movie:
     """A movie of one field of a simulation, whose ranks each hold a part.
 
@@ -88,7 +105,9 @@ class Movie:
         _insitu.grid(self._movie, _three("dims", dims, operator.index),
                      _three("origin", origin, float),
                      _three("spacing", spacing, float))
-        _insitu.recipe(self._movie, json.dumps(given, allow_nan=False))
+        output = given.get("output")
+        _insitu.recipe(self._movie, json.dumps(given, allow_nan=False),
+                       output if isinstance(output, str) else None)
 
     @property
     def _movie(self) -> Any:
@@ -97,13 +116,18 @@ class Movie:
         return self._held[0]
 
     def brick(self, array: Any, first: Sequence[int] = (0, 0, 0), *,
-              halo: int = 0, id: int = 0) -> None:
+              halo: Any = 0, cells: Any = 1, id: int = 0) -> None:
         """This rank's part of the field: an array [z, y, x] whose voxel at
         (0, 0, 0) is `first` (x, y, z) of the grid.  It is used in place, in
         whatever order its axes lie, and read by each `step`.
 
-        halo   layers of other ranks' voxels around it, on all sides, that the
-               array has too and that are up to date; `first` is behind them
+        halo   layers of other ranks' voxels around it that the array has too and
+               that are up to date; `first` is behind them. One number for all
+               sides, or three along x, y, z, each a number or a pair of the layers
+               before and behind
+        cells  voxels of the grid that one value of the array is wide, on a coarser
+               level of refinement: a number, or three along x, y, z; `first` and the
+               grid count voxels of the finest level, halo counts values
         id     a number for each part of a rank that has several
 
         What the library refuses here the next `step` raises too, so that all
@@ -111,8 +135,12 @@ class Movie:
         """
         import numpy
         voxels = numpy.asarray(array)
-        halo, id = _whole("halo", halo), _whole("id", id)
-        if voxels.ndim != 3 or any(side <= 2 * halo for side in voxels.shape):
+        (low, high), id = _sides(halo), _whole("id", id)
+        wide = _three("cells", (cells,) * 3 if isinstance(cells, int) else cells,
+                      operator.index)
+        around = [a + b for a, b in zip(low, high)][::-1]
+        if voxels.ndim != 3 or any(side <= halo for side, halo
+                                   in zip(voxels.shape, around)):
             raise ValueError(f"a brick must be an array of three dimensions with "
                              f"voxels within its halo, not {voxels.shape}")
         if any(step % voxels.itemsize or step <= 0 for step in voxels.strides):
@@ -124,11 +152,12 @@ class Movie:
                             f"float32 or float64; convert it")
         if not voxels.dtype.isnative:
             raise ValueError("a brick must have this machine's order of bytes")
-        inner = voxels[halo:, halo:, halo:] if halo else voxels
-        count = [side - 2 * halo for side in voxels.shape[::-1]]
+        inner = voxels[low[2]:, low[1]:, low[0]:]
+        count = [(side - halo) * width for side, halo, width
+                 in zip(voxels.shape[::-1], around[::-1], wide)]
         strides = [step // voxels.itemsize for step in voxels.strides[::-1]]
         _insitu.brick(self._movie, id, _three("first", first, operator.index),
-                      tuple(count), halo, voxels.dtype.name, inner.ctypes.data,
+                      tuple(count), wide, low, high, voxels.dtype.name, inner.ctypes.data,
                       tuple(strides))
         self._arrays[id] = voxels  # as long as it is read
 

@@ -102,6 +102,8 @@ OTHERS = {
         minimum=0, description="of simulations: the most that a rank holds"),
     "reread": {"type": "boolean", "description": "of simulations: read the file "
                                                  "again when it changes"},
+    "sync": {"type": "boolean", "description": "of simulations: a step waits until "
+                                               "its picture is on the disk"},
     "version": string(description="the version that wrote the file"),
 }
 

@@ -200,6 +200,8 @@ snow_status snow_image_save(const snow_image *image, const char *path,
     snow_writer *writer = NULL;
     SNOW_TRY(
         snow_writer_open(image->context, path, options.overwrite, &writer));
+    if (options.unsynced)
+        snow_writer_hurry(writer);
     snow_monitor monitor;
     snow_monitor_begin(image->context, &monitor, NULL, NULL);
     snow_status status =

@@ -336,9 +336,11 @@ static snow_status make_step(snow_insitu *insitu, int64_t step) {
             "ranks; call snow_insitu_render and write the parts");
     snow_insitu_refresh(insitu);
     INSITU_TRY(update(insitu));
+    if (!insitu->left_out) /* the same on all ranks */
+        INSITU_TRY(snow_insitu_check_file(insitu, step));
     INSITU_TRY(draw_picture(insitu, &image));
     snow_status status = SNOW_STATUS_OK;
-    if (!insitu->left_out) /* the same on all ranks */
+    if (!insitu->left_out)
         status = snow_insitu_count(insitu);
     if (!insitu->left_out && status == SNOW_STATUS_OK)
         status = snow_insitu_write(insitu, step, image);

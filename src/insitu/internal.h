@@ -176,8 +176,8 @@ struct snow_insitu {
 
 /* Parts of snow_insitu_set. */
 snow_status snow_insitu_keep_look(snow_insitu *insitu, const snow_look *given);
-snow_status snow_insitu_keep_output(snow_insitu *insitu, const char *pattern,
-                                    const snow_image_options *options);
+snow_status snow_insitu_keep_output(snow_insitu *insitu,
+                                    const snow_insitu_settings *given);
 
 /* For setters, beside snow_insitu_set_error: SNOW_STATUS_BAD_USAGE with that
  * message. */
@@ -307,6 +307,9 @@ snow_status snow_insitu_count(snow_insitu *insitu);
 /* Replaces a picture by one of another size (enlarge.c). */
 snow_status snow_insitu_enlarge(snow_insitu *insitu, snow_image **image,
                                 int width, int height);
+
+/* Collective.  Whether rank 0 can write that of a step, before it is drawn. */
+snow_status snow_insitu_check_file(snow_insitu *insitu, int64_t step);
 
 /* Collective.  Rank 0 writes its picture, all learn how it went (output.c). */
 snow_status snow_insitu_write(snow_insitu *insitu, int64_t step,

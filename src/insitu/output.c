@@ -31,24 +31,41 @@ static const char *find_number(const char *pattern, int *digits, size_t *end) {
     return *p == 'd' && *digits <= 18 ? at : NULL;
 }
 
-snow_status snow_insitu_keep_output(snow_insitu *insitu, const char *pattern,
-                                    const snow_image_options *options) {
-    snow_image_options form;
+/* Alike on all ranks: no file is looked at. */
+static snow_status check_pattern(snow_context *context, const char *pattern) {
     int digits;
-    size_t end, bytes = strlen(pattern) + 1;
-    INSITU_TRY(INSITU_READ(insitu, snow_image_options, options, &form));
+    size_t end;
     if (!find_number(pattern, &digits, &end))
-        return snow_insitu_refuse(
-            insitu,
+        return snow_context_fail(
+            context, SNOW_STATUS_BAD_USAGE,
             "%.200s: a movie's path has one %%d or %%04d for "
             "the number of the step",
             pattern);
-    char *copy = snow_context_allocate(insitu->context, bytes);
-    if (!copy)
-        return snow_insitu_set_error(insitu, SNOW_STATUS_NO_MEMORY);
-    memcpy(copy, pattern, bytes);
-    snow_context_release(insitu->context, insitu->pattern);
-    insitu->pattern = copy;
+    return snow_image_format_bits(pattern) >= 0
+               ? SNOW_STATUS_OK
+               : snow_image_check_path(context, pattern, true);
+}
+
+/* What allows that files are replaced stays, unless it comes with an output. */
+snow_status snow_insitu_keep_output(snow_insitu *insitu,
+                                    const snow_insitu_settings *given) {
+    snow_context *context = insitu->context;
+    const char *pattern = given->output;
+    snow_image_options form;
+    INSITU_TRY(INSITU_READ(insitu, snow_image_options, given->image, &form));
+    form.unsynced = !given->sync;
+    form.overwrite |= !pattern && insitu->form.overwrite;
+    if (pattern) {
+        INSITU_TRY(
+            snow_insitu_set_error(insitu, check_pattern(context, pattern)));
+        const size_t bytes = strlen(pattern) + 1;
+        char *copy = snow_context_allocate(context, bytes);
+        if (!copy)
+            return snow_insitu_set_error(insitu, SNOW_STATUS_NO_MEMORY);
+        memcpy(copy, pattern, bytes);
+        snow_context_release(context, insitu->pattern);
+        insitu->pattern = copy;
+    }
     insitu->form = form;
     return SNOW_STATUS_OK;
 }
@@ -75,17 +92,20 @@ snow_status snow_insitu_set_time(snow_insitu *insitu, double time,
     return SNOW_STATUS_OK;
 }
 
-static bool format_path(const snow_insitu *insitu, int64_t step, char *out,
-                        size_t capacity) {
+static snow_status format_path(const snow_insitu *insitu, const char *pattern,
+                               int64_t step, char out[PATH_BYTES]) {
     int digits = 0;
     size_t end = 0;
-    const char *pattern = insitu->pattern;
     const char *at = find_number(pattern, &digits, &end);
-    if (!at)
-        return false;
-    int length = snprintf(out, capacity, "%.*s%0*lld%s", (int)(at - pattern),
-                          pattern, digits, (long long)step, pattern + end);
-    return length > 0 && (size_t)length < capacity;
+    const int length =
+        at ? snprintf(out, PATH_BYTES, "%.*s%0*lld%s", (int)(at - pattern),
+                      pattern, digits, (long long)step, pattern + end)
+           : 0;
+    return length > 0 && length < PATH_BYTES
+               ? SNOW_STATUS_OK
+               : snow_context_fail(
+                     insitu->context, SNOW_STATUS_BAD_USAGE,
+                     "%.100s...: the path is too long; shorten it", pattern);
 }
 
 static snow_status add_bar(const snow_insitu *insitu, const double range[2],
@@ -238,10 +258,13 @@ static snow_status save_picture(snow_insitu *insitu, int64_t step,
 
 /* A picture that is there already stays; what to do is said in words of these
  * calls, not of the tool. */
-static snow_status check_free(const snow_insitu *insitu, const char *path) {
+static snow_status check_free(const snow_insitu *insitu, int64_t step) {
+    const snow_view view = snow_insitu_view(insitu);
     snow_context *context = insitu->context;
+    char path[PATH_BYTES];
+    INSITU_TRY(format_path(insitu, insitu->pattern, step, path));
     snow_status status =
-        snow_image_check_path(context, path, insitu->form.overwrite);
+        snow_image_check(context, path, view.width, view.height, &insitu->form);
     if (status != SNOW_STATUS_BAD_OUTPUT ||
         snow_image_check_path(context, path, true) != SNOW_STATUS_OK)
         return status;
@@ -252,17 +275,40 @@ static snow_status check_free(const snow_insitu *insitu, const char *path) {
         path);
 }
 
+snow_status snow_insitu_check_file(snow_insitu *insitu, int64_t step) {
+    snow_status status = SNOW_STATUS_OK;
+    if (snow_comm_rank(insitu->comm) == 0)
+        status = check_free(insitu, step);
+    return snow_comm_agree_status(insitu->comm, status);
+}
+
+/* A folder whose name has the number is made by then. */
+static snow_status try_first(const snow_insitu *insitu, const char *pattern) {
+    char path[PATH_BYTES];
+    if (!pattern)
+        return snow_context_fail(
+            insitu->context, SNOW_STATUS_BAD_USAGE,
+            "there is no path for pictures; give snow_insitu_set an output");
+    INSITU_TRY(check_pattern(insitu->context, pattern));
+    if (snow_comm_rank(insitu->comm) != 0 || strchr(strchr(pattern, '%'), '/'))
+        return SNOW_STATUS_OK;
+    INSITU_TRY(format_path(insitu, pattern, 0, path));
+    return snow_image_check_path(insitu->context, path, true);
+}
+
+snow_status snow_insitu_try_output(snow_insitu *insitu, const char *output) {
+    snow_status status = try_first(insitu, output ? output : insitu->pattern);
+    return snow_insitu_end(insitu,
+                           snow_comm_agree_status(insitu->comm, status));
+}
+
 snow_status snow_insitu_write(snow_insitu *insitu, int64_t step,
                               const snow_image *image) {
     char path[PATH_BYTES];
     double start = snow_comm_seconds(insitu->comm);
     snow_status status = SNOW_STATUS_OK;
-    if (image && !format_path(insitu, step, path, sizeof path))
-        status = snow_context_fail(
-            insitu->context, SNOW_STATUS_BAD_USAGE,
-            "%.100s...: the path is too long; shorten it", insitu->pattern);
-    if (image && status == SNOW_STATUS_OK)
-        status = check_free(insitu, path);
+    if (image)
+        status = format_path(insitu, insitu->pattern, step, path);
     if (image && status == SNOW_STATUS_OK)
         status = save_picture(insitu, step, path, image);
     insitu->seconds.write = snow_comm_seconds(insitu->comm) - start;

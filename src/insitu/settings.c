@@ -115,8 +115,8 @@ snow_status snow_insitu_set(snow_insitu *insitu,
                             const snow_insitu_settings *given) {
     snow_insitu_settings s;
     INSITU_TRY(INSITU_READ(insitu, snow_insitu_settings, given, &s));
-    if (s.output)
-        INSITU_TRY(snow_insitu_keep_output(insitu, s.output, s.image));
+    if (s.output || s.image)
+        INSITU_TRY(snow_insitu_keep_output(insitu, &s));
     if (s.look)
         INSITU_TRY(snow_insitu_keep_look(insitu, s.look));
     if (s.view)

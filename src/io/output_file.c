@@ -268,7 +268,7 @@ static int sync_file(const snow_output_file *file) {
 
 snow_status snow_output_file_finish(snow_output_file *file) {
     const bool through = !file->unnamed && !file->temporary;
-    int number = through ? 0 : sync_file(file);
+    int number = through || file->hurried ? 0 : sync_file(file);
     if (!number && file->unnamed)
         SNOW_TRY(name_file(file));
     const bool named = !through && !file->unnamed && !file->temporary;
@@ -286,7 +286,7 @@ snow_status snow_output_file_finish(snow_output_file *file) {
         snow_release(file->context, file->temporary);
         file->temporary = NULL; /* it has its final name */
     }
-    if (!through)
+    if (!through && !file->hurried)
         sync_folder(file);
     return SNOW_STATUS_OK;
 }

@@ -13,6 +13,7 @@ typedef struct snow_output_file {
     const char *given; /* the caller's name, in `path`'s block */
     int descriptor;    /* -1: closed */
     bool overwrite;    /* may `path` be replaced? */
+    bool hurried;      /* is not synced */
 } snow_output_file;
 
 /* Does what snow_writer_open does; after a failure nothing is left. */
@@ -23,8 +24,8 @@ snow_status snow_output_file_open(snow_context *context, const char *path,
 snow_status snow_output_file_write(snow_output_file *file,
                                    const unsigned char *bytes, size_t size);
 
-/* Syncs, closes and names the file; then, or after a failure of any call, it is
- * to be abandoned. */
+/* Syncs (unless hurried), closes and names the file; then, or after a failure
+ * of any call, it is to be abandoned. */
 snow_status snow_output_file_finish(snow_output_file *file);
 
 /* Closes the file, removes it unless it is finished, and frees its names. */

@@ -35,6 +35,10 @@ snow_status snow_writer_open(snow_context *context, const char *path,
     return status;
 }
 
+void snow_writer_hurry(snow_writer *writer) {
+    writer->file.hurried = true;
+}
+
 static snow_status flush_buffer(snow_writer *writer) {
     size_t fill = writer->fill;
     writer->fill = 0;

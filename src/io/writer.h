@@ -20,6 +20,10 @@ snow_status snow_writer_open(snow_context *context, const char *path,
 snow_status snow_writer_write(snow_writer *writer, const void *bytes,
                               size_t size);
 
+/* Declares that commit is not to wait for the disk: after a power failure the
+ * file may be empty.  The name still comes last. */
+void snow_writer_hurry(snow_writer *writer);
+
 /* Declares that the bytes from here on are to be packed with gzip (level 6).
  * Only before the first write. */
 snow_status snow_writer_pack(snow_writer *writer);

@@ -16,6 +16,7 @@
 typedef struct watched {
     snow_context *context;
     struct stat was;
+    bool formed; /* it has said how files are written */
     char path[PATH_BYTES];
 } watched;
 
@@ -28,6 +29,7 @@ typedef struct picture {
     snow_view view;
     snow_settings settings;
     snow_look_file *tf;
+    bool formed; /* it says, or said, how files are written */
 } picture;
 
 /* What would be another picture of a file, and cannot be made here. */
@@ -106,6 +108,17 @@ static size_t count_planes(const double planes[SNOW_CLIPS_MAX][4]) {
     return count;
 }
 
+/* Whether the recipe says how files are written; a record without texts of its
+ * own is the caller's, who has filled it. */
+static bool has_form(const snow_recipe *recipe) {
+    static const char *const keys[] = {"background", "bits", "overwrite",
+                                       "sync"};
+    bool has = recipe->output || !recipe->owned;
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+        has = has || json_object_get(recipe->owned, keys[i]);
+    return has;
+}
+
 static snow_status set_picture(const snow_recipe *recipe, const picture *p,
                                snow_insitu *insitu) {
     const char *step = recipe->annotate;
@@ -133,7 +146,7 @@ static snow_status set_picture(const snow_recipe *recipe, const picture *p,
     const snow_insitu_settings settings = {
         .size = sizeof settings,
         .output = recipe->output,
-        .image = &recipe->image,
+        .image = p->formed ? &recipe->image : NULL,
         .look = &p->look,
         .view = &p->view,
         .picture = &p->settings,
@@ -141,12 +154,13 @@ static snow_status set_picture(const snow_recipe *recipe, const picture *p,
         .clip = recipe->data.clip[0],
         .clip_count = count_planes(recipe->data.clip),
         .annotations = &annotations,
-        .limits = limited ? &limits : NULL};
+        .limits = limited ? &limits : NULL,
+        .sync = recipe->sync};
     return snow_insitu_set(insitu, &settings);
 }
 
 snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
-    picture p = {.tf = NULL};
+    picture p = {.formed = has_form(recipe)};
     snow_status status =
         make_picture(snow_comm_context(snow_insitu_comm(insitu)), recipe, &p);
     if (status == SNOW_STATUS_OK)
@@ -200,9 +214,11 @@ static snow_status share_text(snow_comm *comm, char **text, size_t *bytes) {
 }
 
 /* Collective.  Of a recipe that is no good on any rank nothing is applied on
- * any; `reread` is what it says. */
+ * any; `reread` is what it says.  What an earlier one said of files, and this
+ * one does not, holds no longer (`formed`). */
 static snow_status take_text(snow_insitu *insitu, const char *path,
-                             const char *text, size_t bytes, bool *reread) {
+                             const char *text, size_t bytes, bool *reread,
+                             bool *formed) {
     snow_comm *comm = snow_insitu_comm(insitu);
     snow_context *context = snow_comm_context(comm);
     picture p = {.tf = NULL};
@@ -212,8 +228,13 @@ static snow_status take_text(snow_insitu *insitu, const char *path,
     if (status == SNOW_STATUS_OK)
         status = make_picture(context, &recipe, &p);
     status = snow_comm_agree_status(comm, status);
-    if (status == SNOW_STATUS_OK)
+    if (status == SNOW_STATUS_OK && recipe.output)
+        status = snow_insitu_try_output(insitu, recipe.output);
+    p.formed = *formed || has_form(&recipe);
+    if (status == SNOW_STATUS_OK) {
+        *formed = p.formed;
         status = snow_comm_agree_status(comm, set_picture(&recipe, &p, insitu));
+    }
     *reread = recipe.reread;
     snow_look_file_free(p.tf);
     snow_recipe_clear(&recipe);
@@ -236,7 +257,7 @@ static snow_status read_again(snow_insitu *insitu, void *user) {
         recipe_read_file(context, w->path, &text, &bytes);
     snow_status status = share_text(comm, &text, &bytes);
     if (status == SNOW_STATUS_OK && bytes)
-        status = take_text(insitu, w->path, text, bytes, &reread);
+        status = take_text(insitu, w->path, text, bytes, &reread, &w->formed);
     if (status == SNOW_STATUS_OK && !reread)
         snow_insitu_set_refresh(insitu, NULL, NULL);
     snow_context_release(context, text);
@@ -268,7 +289,8 @@ snow_status snow_recipe_apply_file(snow_insitu *insitu, const char *path) {
     if (status == SNOW_STATUS_OK)
         status = share_text(comm, &text, &bytes);
     if (status == SNOW_STATUS_OK)
-        status = take_text(insitu, path, text ? text : "", bytes, &reread);
+        status = take_text(insitu, path, text ? text : "", bytes, &reread,
+                           &w->formed);
     if (status == SNOW_STATUS_OK)
         snow_insitu_set_refresh(insitu, reread ? read_again : NULL,
                                 reread ? w : NULL);

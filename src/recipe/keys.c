@@ -163,6 +163,7 @@ const recipe_key recipe_keys[] = {
     TEXT("verb", verb),
     TEXT("version", version),
     MADE("reread", flag, reread, 0, 0, 0),
+    MADE("sync", flag, sync, 0, 0, 0),
     MADE("limit-seconds", given_real, limit_seconds, 0, 1e9, 0),
     MADE("limit-bytes", long, limit_bytes, 0, 9e15, 0),
     {NULL, NULL, 0, 0, 0, 0, NULL, NULL},

@@ -11,9 +11,9 @@ launch 1 "$PYTHON" -c 'from mpi4py import MPI; from snowglass import insitu
 insitu.Movie(MPI.COMM_WORLD, (2, 2, 2))' 2>/dev/null ||
     skip "mpi4py is of another MPI"
 
-for way in "1 plain" "2 fortran" "3 halo"; do
+for way in "1 plain" "2 fortran" "3 halo" "2 sides"; do
     read -r ranks form <<<"$way"
-    rm -f f_*.png
+    rm -f f_*.png c_*.png
     run 0 "$form on $ranks ranks" \
         launch "$ranks" "$PYTHON" "$HERE/python/insitu_movie.py" "$form"
     check "two frames" test -s f_00.png -a -s f_01.png
@@ -24,6 +24,8 @@ for way in "1 plain" "2 fortran" "3 halo"; do
     run 0 "which is the last frame" "$TOOL" compare f_01.png tool.png \
         --tolerance 1.001/255
     run 6 "and not the first" "$TOOL" compare f_00.png tool.png \
+        --tolerance 1.001/255
+    run 0 "cells of two voxels are these" "$TOOL" compare c_00.png c_01.png \
         --tolerance 1.001/255
 done
 

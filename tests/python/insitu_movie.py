@@ -21,8 +21,18 @@ def whole(step):
 
 
 low, high = (16 * n // comm.size for n in (comm.rank, comm.rank + 1))
-if form == "halo":  # one layer of the neighbours, or of the own border
-    part = numpy.pad(whole(0), 1, mode="edge")[low:high + 2].copy()
+halo = {"halo": 1, "sides": ((1, 0), 2, (0, 3))}.get(form, 0)
+around = {"halo": ((1, 1),) * 3, "sides": ((0, 3), (2, 2), (1, 0))}.get(form)
+
+
+def within(step):
+    """The own part with layers of the neighbours, or of the own border."""
+    before, behind = around[0]
+    return numpy.pad(whole(step), around, mode="edge")[low:high + before + behind]
+
+
+if around:
+    part = within(0).copy()
 else:
     part = whole(0)[low:high].copy(order="F" if form == "fortran" else "C")
 with insitu.Movie(comm, dims, spacing=(1, 1, 1.5), output="f_%02d.png",
@@ -30,12 +40,9 @@ with insitu.Movie(comm, dims, spacing=(1, 1, 1.5), output="f_%02d.png",
                           "view": "left"},
                   preset="linear", range=(0, 15), colormap="viridis",
                   fit="volume", bits=16) as movie:
-    movie.brick(part, first=(0, 0, low), halo=1 if form == "halo" else 0)
+    movie.brick(part, first=(0, 0, low), halo=halo)
     for step in range(2):
-        if form == "halo":
-            part[...] = numpy.pad(whole(step), 1, mode="edge")[low:high + 2]
-        else:
-            part[...] = whole(step)[low:high]
+        part[...] = within(step) if around else whole(step)[low:high]
         movie.step(step)
 if comm.rank == 0:
     numpy.save("last.npy", whole(1))
@@ -84,6 +91,11 @@ for wrong, text in (
         (lambda movie: movie.brick(wide, id=-1), "id: -1 is out of range"),
         (lambda movie: movie.brick(wide, id=2 ** 20), "invalid id=1048576"),
         (lambda movie: movie.brick(wide, halo=0.5), "halo: must be a whole number"),
+        (lambda movie: movie.brick(wide, halo=(1, 1)), "halo: give a whole number"),
+        (lambda movie: movie.brick(wide, halo=(1, (0, 1, 2), 0)), "halo: give a whole"),
+        (lambda movie: movie.brick(wide, halo=((0, 4), 0, 0)), "within its halo"),
+        (lambda movie: movie.brick(wide, cells=(2, 2)), "cells: give three whole"),
+        (lambda movie: movie.brick(wide, cells=2), "correct first="),
         (lambda movie: movie.brick(wide > 0), "a brick of bool")):
     with insitu.Movie(comm, (4, 4, 4)) as movie:
         refuses(lambda: wrong(movie), text)
@@ -102,6 +114,27 @@ with insitu.Movie(comm, (4, 4, 4), output="f_%02d.png") as movie:
         movie.brick(wide)
     # Rank 0 writes; the others know why it does not.
     refuses(lambda: movie.step(0), "give overwrite=True to Movie", status=4)
+
+# What cannot be written is known before a step, on all ranks.
+for output, text in (("none/f_%d.png", "make the folder first"),
+                     ("f_%d.tga", "has no suffix of a picture format"),
+                     ("f_%d_%d.png", "one %d or %04d")):
+    refuses(lambda: insitu.Movie(comm, (4, 4, 4), output=output), text,
+            status=4 if "/" in output else None)
+
+# Cells of two voxels, in four fields of four by four, are the voxels of a linear
+# field but in the outermost ones.
+coarse = numpy.arange(8, dtype=numpy.float32)[None, None, :] * 2 + 100.5
+with insitu.Movie(comm, (16, 8, 8 * comm.size), output="c_%02d.png", size=40,
+                  range=(100, 115), bits=16) as movie:
+    movie.brick(numpy.broadcast_to(coarse, (4, 4, 8)).copy(), (0, 0, 8 * comm.rank),
+                cells=2)
+    movie.step(0)
+with insitu.Movie(comm, (16, 8, 8 * comm.size), output="c_%02d.png", size=40,
+                  range=(100, 115), bits=16) as movie:
+    fine = numpy.arange(100, 116, dtype=numpy.float32)
+    movie.brick(numpy.broadcast_to(fine, (8, 8, 16)).copy(), (0, 0, 8 * comm.rank))
+    movie.step(1)
 
 # Of a long path a message has the end.
 deep = "/".join(["folder" * 30] * 12)
