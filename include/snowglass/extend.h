@@ -119,6 +119,12 @@ typedef bool snow_refined_fn(void *user, int64_t y, int64_t z, const double *);
 SNOW_API snow_status snow_cells_refine(snow_context *, const double *cells,
     const snow_box *box, const int64_t ratio[3], const snow_box *voxels,
     snow_refined_fn *take, void *user);
+/* Adds `count` cells of a row, the first at place `first` of it, to the wider
+ * ones of `ratio`, from the first of these on that they lie in: sums of values
+ * and the shares of those that there are. `shares` NULL: 1, of NaN 0. */
+SNOW_API void snow_cells_add(const double *values, const float *shares,
+    int64_t first, int64_t count, const int64_t ratio[3], double *to_values,
+    float *to_shares);
 /* A plan of moves, with its buffers; `clear` drops both. */
 typedef struct snow_voxels snow_voxels;
 SNOW_API snow_status snow_voxels_new(snow_comm *comm, snow_voxels **out);

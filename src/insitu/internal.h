@@ -6,7 +6,8 @@
  *   data.c    takes voxels, by way of    agree.c   what all ranks know
  *                                        layout.c  who draws what
  *                                        levels.c  cells that are wider, and
- *                                        cells.c   where they go
+ *                                        cells.c   where they go,
+ *                                        means.c   what is below
  *   draw.c    makes pictures of them     limits.c  with less and less work
  *   output.c  and writes them            enlarge.c at the size asked for
  *   counts.c  how often values occur */
@@ -55,26 +56,32 @@ typedef struct snow_insitu_seconds {
 typedef struct snow_level_brick {
     snow_box box; /* of voxels; empty: there is none */
     int64_t cells[3];
-    snow_halo halo;
+    int level;         /* of its cells; 0: the widest */
     int64_t pieces[2]; /* that finer ones leave of it: the first, and behind the
                           last */
 } snow_level_brick;
 
-/* Voxels that a rank needs, and the cells of a brick that they come from. */
+/* Cells that a rank needs: a brick's, or of a level below, whose values are the
+ * means of these. */
 typedef struct snow_level_block {
     const snow_level_brick *brick;
-    snow_box voxels, cells;
+    int level;
+    snow_box cells;
 } snow_level_block;
 
 typedef struct snow_level_blocks {
     snow_level_block *blocks;
     int count;
-    int64_t cells; /* of all */
-    char *values;  /* theirs, one block after another */
+    int64_t value_count; /* of all, where a mean counts as a double */
+    char *values;        /* theirs, one block after another */
 } snow_level_blocks;
 
+#define SNOW_LEVELS_MOST 32
+
 typedef struct snow_insitu_levels {
-    snow_level_brick *bricks; /* of all ranks, `most` of each */
+    int64_t sizes[SNOW_LEVELS_MOST][3]; /* of the cells of each, in voxels */
+    int finest;                         /* that of the voxels */
+    snow_level_brick *bricks;           /* of all ranks, `most` of each */
     int64_t most, count;
     snow_box *pieces;
     int64_t piece_count;
@@ -256,10 +263,8 @@ snow_status snow_insitu_lay_out(snow_insitu *insitu);
 snow_box snow_insitu_recut_box(const snow_insitu *insitu,
                                const snow_insitu_layout *layout, int rank);
 
-/* Whether all cells of this rank are voxels; whether a brick's are finer than
- * these (levels.c). */
+/* Whether all cells of this rank are voxels (levels.c). */
 bool snow_insitu_is_even(const snow_insitu *insitu);
-bool snow_level_is_finer(const snow_level_brick *brick, const int64_t cells[3]);
 
 /* Collective.  Lists the bricks of all ranks, and their pieces; those of this
  * rank are what it holds. */
@@ -270,6 +275,13 @@ snow_status snow_insitu_cut_levels(snow_insitu *insitu);
 snow_status snow_insitu_plan_cells(snow_insitu *insitu,
                                    const snow_insitu_layout *layout);
 snow_status snow_insitu_move_cells(snow_insitu *insitu, size_t value);
+
+/* A brick of this rank whose voxels are its cells (cells.c); the means of these
+ * in the cells of a block, doubles (means.c). */
+snow_brick snow_insitu_cells_of(const snow_insitu *insitu,
+                                const snow_level_brick *brick);
+snow_status snow_insitu_mean_cells(const snow_insitu *insitu,
+                                   const snow_level_block *block, char *out);
 
 /* --- boxes.c ---
 

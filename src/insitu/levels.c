@@ -56,7 +56,6 @@ static snow_status share_bricks(snow_insitu *insitu) {
     memset(mine, 0, (size_t)most * sizeof *mine);
     for (int n = 0; n < insitu->brick_count; n++) {
         mine[n].box = insitu->bricks[n].box;
-        mine[n].halo = insitu->bricks[n].halo;
         memcpy(mine[n].cells, insitu->bricks[n].cells, sizeof mine[n].cells);
     }
     levels->most = most;
@@ -65,10 +64,53 @@ static snow_status share_bricks(snow_insitu *insitu) {
                                levels->bricks);
 }
 
-bool snow_level_is_finer(const snow_level_brick *brick,
-                         const int64_t cells[3]) {
-    const int64_t *own = brick->cells;
-    return own[0] * own[1] * own[2] < cells[0] * cells[1] * cells[2];
+static int64_t volume_of(const int64_t cells[3]) {
+    return cells[0] * cells[1] * cells[2];
+}
+
+/* The sizes of cells become levels, the widest first; voxels are the last. */
+static void list_levels(snow_insitu_levels *levels) {
+    int64_t last = INT64_MAX;
+    for (int l = 0; l < SNOW_LEVELS_MOST && last > 1; l++) {
+        const int64_t voxel[3] = {1, 1, 1}, *widest = voxel;
+        for (int64_t n = 0; n < levels->count; n++)
+            if (snow_box_voxels(&levels->bricks[n].box) &&
+                volume_of(levels->bricks[n].cells) < last &&
+                volume_of(levels->bricks[n].cells) > volume_of(widest))
+                widest = levels->bricks[n].cells;
+        memcpy(levels->sizes[l], widest, sizeof *levels->sizes);
+        levels->finest = l;
+        last = volume_of(widest);
+    }
+}
+
+/* The cells of each level divide those of the one below. */
+static snow_status check_level(snow_insitu *insitu, int level,
+                               const int64_t cells[3], bool finer) {
+    const int64_t *size = insitu->levels.sizes[level];
+    for (int i = 0; i < 3; i++)
+        if (finer ? size[i] % cells[i] : cells[i] % size[i])
+            return snow_context_fail(
+                insitu->context, SNOW_STATUS_BAD_USAGE,
+                "there are cells of %lld and of %lld voxels along axis %d: "
+                "the cells of each level must divide those of the coarser one",
+                (long long)size[i], (long long)cells[i], i);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status find_levels(snow_insitu *insitu) {
+    snow_insitu_levels *levels = &insitu->levels;
+    list_levels(levels);
+    for (int64_t n = 0; n < levels->count; n++) {
+        snow_level_brick *brick = &levels->bricks[n];
+        if (!snow_box_voxels(&brick->box))
+            continue;
+        while (volume_of(levels->sizes[brick->level]) > volume_of(brick->cells))
+            brick->level++;
+        for (int l = 0; l <= levels->finest; l++)
+            INSITU_TRY(check_level(insitu, l, brick->cells, l <= brick->level));
+    }
+    return SNOW_STATUS_OK;
 }
 
 static snow_status add_piece(snow_insitu *insitu, const snow_box *box) {
@@ -144,8 +186,7 @@ static snow_status cut_brick(snow_insitu *insitu, int64_t number) {
         INSITU_TRY(add_piece(insitu, &brick->box));
     for (int64_t n = 0; n < levels->count; n++) {
         const snow_level_brick *other = &levels->bricks[n];
-        if (!snow_box_voxels(&other->box) ||
-            !snow_level_is_finer(other, brick->cells))
+        if (!snow_box_voxels(&other->box) || other->level <= brick->level)
             continue;
         INSITU_TRY(check_ends(insitu, number, &other->box));
         INSITU_TRY(cut_out(insitu, brick->pieces[0], &other->box));
@@ -158,6 +199,7 @@ static snow_status cut_all(snow_insitu *insitu) {
     snow_insitu_levels *levels = &insitu->levels;
     const int64_t own = levels->most * snow_comm_rank(insitu->comm);
     levels->piece_count = 0;
+    INSITU_TRY(find_levels(insitu));
     for (int64_t n = 0; n < levels->count; n++)
         INSITU_TRY(cut_brick(insitu, n));
     const int64_t first = levels->bricks[own].pieces[0];

@@ -211,6 +211,23 @@ static void refine_slice(const refining *r, const snow_box *voxels, int64_t z,
     }
 }
 
+void snow_cells_add(const double *values, const float *shares, int64_t first,
+                    int64_t count, const int64_t ratio[3], double *to_values,
+                    float *to_shares) {
+    const float part = 1 / (float)(ratio[0] * ratio[1] * ratio[2]);
+    int64_t left = ratio[0] - first % ratio[0], at = 0;
+    for (int64_t i = 0; i < count; i++) {
+        const float share = shares ? shares[i] : isfinite(values[i]) ? 1 : 0;
+        if (share > 0)
+            to_values[at] += (double)(share * part) * values[i];
+        to_shares[at] += share * part;
+        if (--left == 0) {
+            left = ratio[0];
+            at++;
+        }
+    }
+}
+
 /* All scratch memory, in one block of values and one of places. */
 static snow_status allocate_scratch(snow_context *context, refining *r,
                                     const snow_box *voxels, place **places,

@@ -3,6 +3,7 @@
  * that of the same field on the finest grid. */
 #include "support/support.h"
 
+#include "formats/amr/amr.h"
 #include "image/image.h"
 #include "insitu/internal.h"
 
@@ -20,6 +21,8 @@ typedef struct scene {
     int ranks;
     snow_type type;
     int64_t halo;
+    snow_context *context; /* of one rank, and its grid */
+    snow_volume_info whole;
     const char *wrong; /* part of a message; NULL: none */
     snow_box odd;      /* replaces the finest brick, unless it is empty */
     uint64_t sent[8];  /* by each rank: bytes, of values in place */
@@ -288,6 +291,106 @@ static void what_cannot_be_refined_is_refused(void **state) {
         }
 }
 
+/* --- files ---------------------------------------------------------------- */
+
+/* A part of a brick's cells, as a file would have them. */
+static snow_status read_cells(void *user, size_t number, const snow_box *part,
+                              snow_volume **out) {
+    const scene *s = user;
+    const int64_t *cells = bricks[number].cells;
+    snow_volume_info info = s->whole;
+    info.type = s->type;
+    memcpy(info.dims, part->count, sizeof info.dims);
+    SNOW_TRY(snow_volume_new(s->context, &info, out));
+    for (int64_t n = 0; n < snow_box_voxels(part); n++) {
+        const int64_t at[3] = {n % part->count[0],
+                               n / part->count[0] % part->count[1],
+                               n / part->count[0] / part->count[1]};
+        double place[3];
+        for (int i = 0; i < 3; i++)
+            place[i] =
+                ((double)(part->first[i] + at[i]) + 0.5) * (double)cells[i] -
+                0.5;
+        put(s->type, (*out)->owned, n, value_at((int)number, place));
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* The box that a rank holds, read as that of a file with these bricks. */
+static snow_status read_box(scene *s, const snow_box *box, snow_volume **out) {
+    amr_grid grid = {.context = s->context,
+                     .levels = 3,
+                     .ratio = {{1, 1, 1}, {2, 2, 2}, {2, 2, 2}},
+                     .cells = {dims[0] / 4, dims[1] / 4, dims[2] / 4},
+                     .size = {4, 4, 4},
+                     .type = s->type,
+                     .read = read_cells,
+                     .user = s};
+    snow_volume_options options = {.size = sizeof options};
+    snow_volume_info info = s->whole;
+    for (int n = 0; n < BRICKS; n++) {
+        const int64_t wide = bricks[n].cells[0];
+        snow_box cells = bricks[n].box;
+        for (int i = 0; i < 3; i++) {
+            cells.first[i] /= wide;
+            cells.count[i] /= wide;
+        }
+        SNOW_TRY(snow_amr_add(&grid,
+                              wide == 4   ? 0
+                              : wide == 2 ? 1
+                                          : 2,
+                              &cells));
+    }
+    SNOW_TRY(snow_amr_describe(&grid, &options, &info));
+    for (int i = 0; i < 3; i++) {
+        options.crop[i][0] = box->first[i];
+        options.crop[i][1] = box->first[i] + box->count[i];
+    }
+    snow_status status = snow_amr_read(&grid, &options, &info, out);
+    snow_amr_free(&grid);
+    return status;
+}
+
+static snow_status hold_against_file(snow_comm *comm, void *user) {
+    scene s = *(const scene *)user;
+    void *blocks[BRICKS] = {NULL};
+    snow_insitu *insitu = NULL;
+    SNOW_TRY(snow_insitu_new(comm, &insitu));
+    s.context = insitu->context;
+    SNOW_TRY(snow_insitu_set_grid(insitu, dims, NULL, NULL));
+    s.whole = insitu->whole;
+    SNOW_TRY(give_bricks(insitu, &s, snow_comm_rank(comm), blocks));
+    SNOW_TRY(snow_insitu_update(insitu));
+    snow_volume *file = NULL;
+    SNOW_TRY(read_box(&s, &insitu->layout.stored, &file));
+    const size_t bytes = (size_t)snow_box_voxels(&insitu->layout.stored) *
+                         snow_type_size(s.type);
+    const bool same = memcmp(snow_volume_voxels(insitu->volume),
+                             snow_volume_voxels(file), bytes) == 0;
+    snow_volume_close(file);
+    snow_insitu_free(insitu);
+    for (int n = 0; n < BRICKS; n++)
+        free(blocks[n]);
+    return same ? SNOW_STATUS_OK
+                : snow_context_fail(s.context, SNOW_STATUS_FAILED, "differ");
+}
+
+/* Bit for bit, so that pictures of a run and of its files are the same. */
+static void voxels_are_those_of_a_file(void **state) {
+    (void)state;
+    for (int ranks = 1; ranks <= 7; ranks += 3)
+        for (int i = 0; i < 2; i++) {
+            scene s = {.ranks = ranks,
+                       .halo = 3 * i,
+                       .type = i ? SNOW_TYPE_FLOAT64 : SNOW_TYPE_FLOAT32};
+            snow_context *context = support_context();
+            if (snow_comm_run_threads(context, ranks, hold_against_file, &s) !=
+                SNOW_STATUS_OK)
+                fail_msg("%d ranks: %s", ranks, snow_context_message(context));
+            snow_context_free(context);
+        }
+}
+
 static snow_status set_wrong(snow_comm *comm, void *user) {
     static const int64_t first[3] = {4, 0, 0}, count[3] = {6, 8, 8};
     static const int64_t four[3] = {4, 4, 4}, none[3] = {1, 0, 1};
@@ -317,6 +420,7 @@ static void a_brick_ends_where_its_cells_do(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cells_of_all_sizes_are_one_picture),
+        cmocka_unit_test(voxels_are_those_of_a_file),
         cmocka_unit_test(ranks_send_the_cells_that_others_need),
         cmocka_unit_test(what_cannot_be_refined_is_refused),
         cmocka_unit_test(a_brick_ends_where_its_cells_do),

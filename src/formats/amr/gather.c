@@ -145,11 +145,9 @@ static void add_below(gathering *g, int level, const int64_t at[3],
     int64_t place = place_in(&to->box, cell);
     int64_t left = ratio[0] - at[0] % ratio[0];
     begin_row(to, place);
+    snow_cells_add(values, shares, at[0], count, ratio, to->values + place,
+                   to->shares + place);
     for (int64_t i = 0; i < count; i++) {
-        const float share = shares ? shares[i] : isfinite(values[i]) ? 1 : 0;
-        if (share > 0)
-            to->values[place] += (double)(share * part) * values[i];
-        to->shares[place] += share * part;
         to->covered[place] += (covered ? covered[i] : 1) * part;
         if (--left == 0) {
             left = ratio[0];
