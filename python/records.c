@@ -278,6 +278,7 @@ static const field option_fields[] = {
     OPTION(levels, 'l'),
     OPTION(suv, 's'),
     OPTION(z_scale, 'd'),
+    OPTION(vertical, 's'),
 };
 
 #define LOOK(name, kind) FIELD(snow_look, name, kind)

@@ -111,6 +111,7 @@ typedef struct snow_volume_options {
     int64_t levels; /* of refinement, so many of the coarsest; 0: all */
     const char *suv; /* PET: "bw", "lbm", "bsa", "none"; NULL: bw, if known */
     double z_scale; /* of the world's z; 0: of the earth's grids by their size */
+    const char *vertical; /* WRF: "levels", "height"; NULL: levels */
 } snow_volume_options;
 SNOW_RECORD(snow_volume_options);
 /* Opens a file (format by its first bytes, then its name; gzip is undone), "-"

@@ -38,6 +38,7 @@ snow_volume_options data_options(const options *opts) {
         .levels = opts->levels,
         .suv = suv_of(opts),
         .z_scale = opts->z_scale,
+        .vertical = opts->vertical,
         .component = opts->component,
         .dataset = opts->dataset,
         .series = opts->series,

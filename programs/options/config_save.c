@@ -22,6 +22,7 @@ static void fill_data(const options *opts, snow_recipe *out) {
     static char text[1024], steps[64];
     out->data = data_options(opts);
     out->data.suv = opts->suv;
+    out->data.vertical = opts->vertical;
     if (opts->channels.count) {
         channels_text(&opts->channels, text, sizeof text);
         out->channels = text;

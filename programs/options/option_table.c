@@ -234,6 +234,10 @@ const option_row option_table[] = {
     {"levels", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(levels), 1, 24,
      "levels of refinement to read, the coarsest first, as if the file had no "
      "finer ones: of AMReX and .vth (default: all)"},
+    {"vertical", 0, "levels|height", TOPIC_DATA, INPUT, read_choice,
+     FIELD(vertical), 0, 0,
+     "how levels of WRF that follow the ground are shown: flat, at their mean "
+     "heights, or each column at its own (default: levels)"},
     {"z-scale", 0, "F|auto", TOPIC_DATA, INPUT, read_z_scale, FIELD(z_scale),
      1e-9, 1e9, "factor on the height of the world; auto, the default, makes that of "
      "a grid of the earth, whose x and y are degrees and whose z is not, a third "

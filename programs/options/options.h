@@ -118,6 +118,7 @@ typedef struct options {
     bool allow_gaps;
     const char *suv;                         /* NULL: not given */
     int64_t levels;                          /* 0: all */
+    const char *vertical;                    /* NULL: not given */
     double z_scale;                          /* 0: auto */
     int64_t crop[3][2];                      /* 0: the end */
     double clip[SNOW_CLIPS_MAX][4];          /* zeros: none */

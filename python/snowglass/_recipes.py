@@ -14,7 +14,7 @@ from ._options import DEFAULTS
 #: Keys of the data, as options of Volume.
 DATA = ("dims", "type", "endian", "spacing", "offset", "time", "channel",
         "component", "crop", "dataset", "series", "allow_gaps", "suv", "levels",
-        "z_scale", "mask", "labels", "label_table", "clip")
+        "z_scale", "vertical", "mask", "labels", "label_table", "clip")
 #: Keys of the look.
 LOOK = ("preset", "colormap", "range", "opacity", "gradient_opacity", "scale")
 #: Other names of some, as of matplotlib and PyVista, and what no recipe has.

@@ -55,7 +55,7 @@ class Volume(_snowglass.Volume):
     ((x0, x1), (y0, y1), (z0, z1)), dataset, series, allow_gaps (a DICOM folder,
     an OME-TIFF or a stack of ImageJ in which slices are missing is opened), suv (unit of PET in DICOM: "bw", "lbm",
     "bsa", or "none", as stored), levels (of refinement that are read,
-    the coarsest first), z_scale (a factor on the height, or "auto", as of --z-scale), mask (a path), labels ("1,4-7"),
+    the coarsest first), z_scale (a factor on the height, or "auto", as of --z-scale), vertical (of WRF: "levels" or "height"), mask (a path), labels ("1,4-7"),
     label_table (a path: names and colours), clip (planes (a, b, c, d): what lies where a x + b y + c z > d is cut away).
 
     channel   Pictures of a file whose channels are images of one thing show all
@@ -125,7 +125,7 @@ class Volume(_snowglass.Volume):
         if isinstance(fields.get("component"), (tuple, list)):
             fields["component"] = ",".join(map(str, fields["component"]))
         for name in ("mask", "label_table", "dataset", "series", "labels",
-                     "component", "suv"):
+                     "component", "suv", "vertical"):
             if fields.get(name) is not None:
                 fields[name] = os.fsencode(fields[name]) \
                     if name in ("mask", "label_table") else str(fields[name])

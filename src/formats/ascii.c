@@ -205,6 +205,139 @@ snow_status snow_read_numbers(snow_source *source, snow_type type, bool commas,
     return read_words(&reader, type, part, voxels);
 }
 
+/* --- grids of chemistry's programs ---------------------------------------- */
+
+/* A number of C or of Fortran, whose exponents may begin with D, and have no
+ * letter where they need three digits. */
+static bool read_real(const char *word, double *out) {
+    char text[64];
+    size_t used = 0;
+    if (snow_parse_double(word, out))
+        return true;
+    for (const char *at = word; *at && used < sizeof text - 2; at++) {
+        const bool is_sign = *at == '+' || *at == '-';
+        if (is_sign && used && isdigit((unsigned char)at[-1]) &&
+            strlen(at) == 4)
+            text[used++] = 'e';
+        text[used++] = *at == 'D' || *at == 'd' ? 'e' : *at;
+    }
+    text[used] = 0;
+    return used < sizeof text - 2 && snow_parse_double(text, out);
+}
+
+static uint64_t count_of(const snow_text_grid *grid) {
+    return (uint64_t)(grid->values * grid->dims[0] * grid->dims[1] *
+                      grid->dims[2]);
+}
+
+static snow_status fail_short(const word_reader *reader,
+                              const snow_text_grid *grid, uint64_t got) {
+    const uint64_t all = count_of(grid);
+    return snow_fail(snow_source_context(reader->source), SNOW_STATUS_BAD_INPUT,
+                     "%s: ends after %llu of %llu values, %llu are missing; it "
+                     "is truncated, get or write it again",
+                     snow_source_name(reader->source), (unsigned long long)got,
+                     (unsigned long long)all, (unsigned long long)(all - got));
+}
+
+/* The sizes must be possible before anything is done with them: each number has
+ * a digit and a blank. */
+static snow_status expect_grid(snow_source *source,
+                               const snow_text_grid *grid) {
+    uint64_t all = 2 * (uint64_t)grid->values;
+    bool fits = true;
+    for (int i = 0; i < 3; i++)
+        fits = fits && snow_mul_u64(all, (uint64_t)grid->dims[i], &all);
+    if (!fits || all > (uint64_t)INT64_MAX)
+        return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
+                         "has more values than any file; its sizes are wrong");
+    return snow_source_expect(source, all - 1, "the values");
+}
+
+snow_status snow_skip_grid(snow_source *source, const snow_text_grid *grid) {
+    word_reader reader = {.source = source};
+    SNOW_TRY(expect_grid(source, grid));
+    for (uint64_t i = 0; i < count_of(grid); i++) {
+        bool got;
+        SNOW_TRY(next_word(&reader, &got));
+        if (!got)
+            return fail_short(&reader, grid, i);
+    }
+    return drop_read(&reader);
+}
+
+/* Stores a value at its voxel, and where an axis is closed at its end too, if
+ * they are in the box. */
+static void store_closed(const snow_text_grid *grid, const snow_region *box,
+                         const int64_t at[3], double value, double *voxels) {
+    for (int corner = 0; corner < 8; corner++) {
+        int64_t place[3];
+        bool inside = true;
+        for (int i = 0; i < 3; i++) {
+            const bool end = corner >> i & 1;
+            inside = inside && (!end || (grid->closed && !at[i]));
+            place[i] = (end ? grid->dims[i] : at[i]) - box->first[i];
+            inside = inside && place[i] >= 0 && place[i] < box->count[i];
+        }
+        if (inside)
+            voxels[(place[2] * box->count[1] + place[1]) * box->count[0] +
+                   place[0]] = value;
+        if (!grid->closed || (at[0] && at[1] && at[2]))
+            return;
+    }
+}
+
+static snow_status read_reals(word_reader *reader, const snow_text_grid *grid,
+                              const snow_region *box, double *voxels) {
+    snow_context *context = snow_source_context(reader->source);
+    const uint64_t all = count_of(grid);
+    int64_t at[3] = {0, 0, 0}, value = 0;
+    for (uint64_t i = 0; i < all; i++) {
+        double number;
+        bool got;
+        SNOW_TRY(next_word(reader, &got));
+        if (!got)
+            return fail_short(reader, grid, i);
+        if (!read_real(reader->word, &number))
+            return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                             "%s: its value %llu, \"%.40s\", is no number; "
+                             "the file is damaged, write it again",
+                             snow_source_name(reader->source),
+                             (unsigned long long)i, reader->word);
+        if (value == grid->value)
+            store_closed(grid, box, at, number, voxels);
+        if (++value < grid->values)
+            continue;
+        value = 0;
+        for (int k = 0; k < 3; k++) {
+            const int axis = grid->order[k];
+            if (++at[axis] < grid->dims[axis])
+                break;
+            at[axis] = 0;
+        }
+    }
+    return drop_read(reader);
+}
+
+snow_status snow_read_grid(snow_source *source, const snow_text_grid *grid,
+                           const snow_volume_options *options,
+                           snow_volume_info *info, snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    word_reader reader = {.source = source};
+    snow_region box;
+    snow_volume *volume;
+    info->type = SNOW_TYPE_FLOAT64;
+    for (int i = 0; i < 3; i++)
+        info->dims[i] = grid->dims[i] + grid->closed;
+    SNOW_TRY(expect_grid(source, grid));
+    SNOW_TRY(snow_region_lay_out(context, options, info, &box));
+    if (!out)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_volume_new(context, info, &volume));
+    return snow_volume_give(read_reals(&reader, grid, &box, volume->owned),
+                            volume, out);
+}
+
 /* Splits off the next word; 0 at the end, -1 for one that is too long. */
 static int split_word(const char **at, const char *between, char word[64]) {
     char apart[16] = " \t\r\n";

@@ -26,6 +26,27 @@ bool snow_has_word(const char *words, const char *word);
 snow_status snow_read_numbers(snow_source *source, snow_type type, bool commas,
                               const snow_file_part *part, void *voxels);
 
+/* A grid of numbers in text, nested axes with the fastest one first. */
+typedef struct snow_text_grid {
+    int64_t values; /* of a voxel, of which one is wanted; the fastest axis */
+    int64_t value;
+    int order[3]; /* axis x, y or z (0 to 2) that is next fastest, and so on */
+    int64_t dims[3]; /* of the file */
+    bool closed;     /* the volume has one more along each axis: the first */
+} snow_text_grid;
+
+/* Where a source is, in which numbers of such grids follow one another: passes
+ * one, whose words may be any.  Errors: SNOW_STATUS_BAD_INPUT (fewer). */
+snow_status snow_skip_grid(snow_source *source, const snow_text_grid *grid);
+
+/* Makes the volume of one, of type float64, in the box of the options, unless
+ * `out` is NULL; info->dims are those of the volume.  Numbers may be written as
+ * by C or Fortran (1.5D+03, 1.5-103).  Errors: SNOW_STATUS_BAD_INPUT (fewer, a
+ * word that is none), SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY. */
+snow_status snow_read_grid(snow_source *source, const snow_text_grid *grid,
+                           const snow_volume_options *options,
+                           snow_volume_info *info, snow_volume **out);
+
 /* Numbers of a text between blanks and the letters `between`: how many there
  * are, or -1 if something else is there, or more than `most`. */
 int snow_text_reals(const char *text, const char *between, double *out,

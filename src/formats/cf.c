@@ -152,8 +152,10 @@ static snow_uneven plan_grid(snow_context *context, const cf_axis axes[3],
                              snow_volume_info *info) {
     snow_uneven grid = {.count = {1, 1, 1}};
     memcpy(grid.count, info->dims, sizeof grid.count);
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
         grid.at[i] = axes[i].uneven ? axes[i].coordinates : NULL;
+        grid.moved[i] = axes[i].uneven ? axes[i].moved : NULL;
+    }
     if (snow_uneven_any(&grid)) {
         snow_uneven_plan(context, &grid, info);
         memcpy(info->dims, grid.even, sizeof grid.even);

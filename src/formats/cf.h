@@ -22,6 +22,8 @@ typedef struct cf_axis {
     double first, step;
     double departs;      /* of an even axis: at most so much of a step */
     double *coordinates; /* all of them; NULL: none */
+    double *moved; /* in the same block: where they are at this step, on the
+                      grid that `coordinates` make; NULL: there */
     char unit[64], calendar[24];
 } cf_axis;
 
@@ -44,7 +46,7 @@ typedef struct cf_attribute {
 /* What the attributes of a variable say. */
 typedef struct cf_attributes {
     char units[64], long_name[65], standard_name[64], axis[16];
-    char calendar[24], positive[8];
+    char calendar[24], positive[8], coordinates[256];
     bool codes; /* flag_values, flag_masks */
     int sign;   /* _Unsigned: 1 is true, -1 false, 0 not given */
     double scale, offset;
@@ -59,6 +61,18 @@ extern const char *const snow_cf_names[];
 void snow_cf_attributes_begin(cf_attributes *out);
 void snow_cf_take(const char *name, const cf_attribute *given,
                   cf_attributes *out);
+
+/* Variables that say where others lie, which are no volumes unless they are
+ * asked for; all zeros are none. */
+typedef struct cf_aside {
+    char names[4096]; /* " nav_lon  nav_lat " */
+} cf_aside;
+
+/* Adds what an attribute of any variable names, if it is "bounds" or
+ * "coordinates"; whether the last part of a path is among the names. */
+void snow_cf_aside_add(const char *attribute, const char *names,
+                       cf_aside *aside);
+bool snow_cf_is_aside(const cf_aside *aside, const char *path);
 
 /* A number whose 64 bits are not known. */
 cf_number snow_cf_number(double value);
@@ -127,9 +141,12 @@ void snow_cf_place(snow_context *context, const cf_axis axes[3],
 typedef snow_uneven_fn cf_read_fn;
 
 /* Reads them as data on the even grid: missing ones are NaN, for which integers
- * become floats; sets type, slope and intercept. */
-snow_status snow_cf_read(snow_context *context, const snow_uneven *grid,
-                         cf_values *values, cf_read_fn *read, void *user,
+ * become floats; sets type, slope and intercept.  `model` (cf/model.h) may be
+ * NULL. */
+struct cf_model;
+snow_status snow_cf_read(snow_context *context, const struct cf_model *model,
+                         const snow_uneven *grid, cf_values *values,
+                         cf_read_fn *read, void *user,
                          const snow_volume_options *options,
                          snow_volume_info *info, snow_volume **out);
 

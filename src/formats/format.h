@@ -70,6 +70,8 @@ extern const snow_format snow_format_bov;
 extern const snow_format snow_format_xdmf;
 extern const snow_format snow_format_amrex;
 extern const snow_format snow_format_vth;
+extern const snow_format snow_format_cube;
+extern const snow_format snow_format_vasp;
 
 /* Returns whether the user gives the spacing, so that what a file lacks of it
  * needs no warning. */

@@ -51,6 +51,12 @@ static snow_status check_options(snow_context *context,
                          "--levels: %lld is not a number of levels; give at "
                          "least 1, or 0 for all",
                          (long long)options->levels);
+    if (options->vertical && strcmp(options->vertical, "levels") != 0 &&
+        strcmp(options->vertical, "height") != 0)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--vertical %.64s: is no way to show levels; give "
+                         "levels or height",
+                         options->vertical);
     if (options->suv && strcmp(options->suv, "bw") != 0 &&
         strcmp(options->suv, "lbm") != 0 && strcmp(options->suv, "bsa") != 0 &&
         strcmp(options->suv, "none") != 0)

@@ -14,7 +14,8 @@ static const snow_format *const formats[] = {
     &snow_format_tiff,      &snow_format_png,    &snow_format_jpeg,
     &snow_format_hdf5,      &snow_format_netcdf, &snow_format_den,
     &snow_format_mgh,       &snow_format_gipl,   &snow_format_zarr,
-    &snow_format_visit,     &snow_format_bov,    &snow_format_raw,
+    &snow_format_visit,     &snow_format_bov,    &snow_format_cube,
+    &snow_format_vasp,      &snow_format_raw,
 };
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 

@@ -49,6 +49,7 @@ static snow_status check_foreign(snow_context *context,
                           : data->label_table ? "label-table"
                           : data->levels      ? "levels"
                           : data->suv         ? "suv"
+                          : data->vertical    ? "vertical"
                           : data->z_scale > 0 ? "z-scale"
                                               : NULL;
     return foreign ? snow_context_fail(context, SNOW_STATUS_BAD_USAGE,

@@ -55,6 +55,11 @@ static const char *endian_name(int value) {
     return of_list(names, 3, value);
 }
 
+static const char *vertical_name(int value) {
+    static const char *const names[] = {"levels", "height"};
+    return of_list(names, 2, value);
+}
+
 static const char *suv_name(int value) {
     static const char *const names[] = {"bw", "lbm", "bsa", "none"};
     return of_list(names, 4, value);
@@ -145,6 +150,7 @@ const recipe_key recipe_keys[] = {
     TEXT("series", data.series),
     MADE("allow-gaps", flag, data.allow_gaps, 0, 0, 0),
     KNOWN("suv", data.suv, suv_name, NULL),
+    KNOWN("vertical", data.vertical, vertical_name, NULL),
     MADE("levels", long, data.levels, 1, 24, 0),
     MADE("z-scale", given_real, data.z_scale, 1e-9, 1e9, 0),
     TEXT("mask", data.mask),

@@ -166,6 +166,124 @@ again = oracle.tool("render", "t.nc", "--dataset", "w", "--time", "12h", "-s",
 if " --time 2 " not in again:
     oracle.fail("WRF", f"the command of a step at a time is {again}")
 
+# The grid of WRF: what lies between mass points, levels by their heights, dates.
+def wrf(path, form, times, steps, hill=900.0, **attributes):
+    """A run of 5 x 4 x 6 mass points over a hill; its arrays."""
+    a = {"T": ("bottom_top", "south_north", "west_east"),
+         "U": ("bottom_top", "south_north", "west_east_stag"),
+         "V": ("bottom_top", "south_north_stag", "west_east"),
+         "W": ("bottom_top_stag", "south_north", "west_east"),
+         "PH": ("bottom_top_stag", "south_north", "west_east"),
+         "PHB": ("bottom_top_stag", "south_north", "west_east"),
+         "TSLB": ("soil_layers_stag", "south_north", "west_east")}
+    sizes = {"Time": None, "west_east": 6, "south_north": 4, "bottom_top": 5,
+             "west_east_stag": 7, "south_north_stag": 5, "bottom_top_stag": 6,
+             "soil_layers_stag": 3, "DateStrLen": 19}
+    values = {name: oracle.sample("f4", (steps, *(sizes[d] for d in axes)), n)
+              for n, (name, axes) in enumerate(a.items())}
+    ground = hill * np.array([0, .2, 1, .5, 0, 0]) + np.zeros((4, 6))
+    levels = np.array([0, 100, 300, 700, 1500, 3000.0])
+    values["PHB"] = np.float32(9.81 * (ground + levels[:, None, None]
+                                       * (1 - ground / 6000)) + np.zeros((steps, 6, 4, 6)))
+    values["PH"] = np.float32(values["PH"] % 50 + 90 * levels[:, None, None] / 3000)
+    with netCDF4.Dataset(path, "w", format=form) as file:
+        file.setncatts({"TITLE": " OUTPUT FROM WRF V4.2 MODEL", **attributes})
+        file.DX, file.DY = np.float32(3000), np.float32(2000)
+        for name, size in sizes.items():
+            file.createDimension(name, size)
+        file.createVariable("Times", "S1", ("Time", "DateStrLen"))[:] = \
+            np.array([list(t) for t in times], "S1")
+        for name, size in (("XLAT", 1), ("XLONG", 1)):
+            file.createVariable(name, "f4", ("Time", *a["T"][1:]))[:] = np.ones((steps, 4, 6))
+        for name, axes in a.items():
+            v = file.createVariable(name, "f4", ("Time", *axes))
+            v[:] = values[name]
+            v.coordinates = "XLONG XLAT XTIME"
+    return values
+
+
+def heights(v, step):
+    """Those of the mass points, and of the ground and the top."""
+    h = (v["PH"][step].astype("f8") + v["PHB"][step]) / 9.81
+    return (h[1:] + h[:-1]) / 2, h[0], h[-1]
+
+
+HOURS = [f"2005-08-28_{hour:02d}:00:00" for hour in range(5)]
+for form in ("NETCDF4", "NETCDF3_64BIT_OFFSET"):
+    v = wrf("w.nc", form, HOURS[:2], 2, SIMULATION_START_DATE="2005-08-27_12:00:00")
+    mass = {"T": v["T"], "U": (v["U"][..., 1:] + v["U"][..., :-1]) / 2,
+            "V": (v["V"][:, :, 1:] + v["V"][:, :, :-1]) / 2,
+            "W": (v["W"][:, 1:] + v["W"][:, :-1]) / 2}
+    for name, values in mass.items():
+        for step in (0, 1):
+            options = ["--dataset", name, "--time", step]
+            told = oracle.told("w.nc", *options)
+            found, _ = oracle.voxels_of("w.nc", options)
+            matrix = told["matrix"]
+            mean = heights(v, step)[0].mean((1, 2))
+            base = v["PHB"][0].astype("f8").mean((1, 2)) / 9.81
+            first = (base[0] + base[1]) / 2
+            nodes = np.clip(np.rint((mean - first) / matrix[2][2]), 0,
+                            told["dims"][2] - 1).astype(int)
+            if not np.allclose(found[nodes], values[step], rtol=1e-5, atol=1e-4) or \
+                    len(set(nodes)) < 5:
+                oracle.fail(form, f"{options}: other values at {nodes}")
+            if not np.allclose([matrix[0][0], matrix[1][1], matrix[2][3]],
+                               [3000, 2000, first], rtol=1e-5) or told["unit"] != "m":
+                oracle.fail(form, f"{options}: placed by {matrix}")
+            if (told["time_value"], told["time_unit"]) != \
+                    (720 + 60 * step, "minutes since 2005-08-27 12:00:00"):
+                oracle.fail(form, f"{options}: at {told['time_value']} {told['time_unit']}")
+            # Columns at even heights: nothing below the ground.
+            options += ["--vertical", "height"]
+            found, _ = oracle.voxels_of("w.nc", options)
+            matrix = oracle.told("w.nc", *options)["matrix"]
+            z = matrix[2][3] + matrix[2][2] * np.arange(len(found))
+            at, ground, top = heights(v, step)
+            right = np.full(found.shape, np.nan)
+            for y, x in np.ndindex(4, 6):
+                inside = (z >= ground[y, x]) & (z <= top[y, x])
+                right[inside, y, x] = np.interp(z[inside], at[:, y, x], values[step][:, y, x])
+            oracle.checked += 1
+            if not np.allclose(found, right, rtol=1e-4, atol=1e-3, equal_nan=True) or \
+                    not np.isnan(found[0, 0, 2]) or z[-1] < 2000:
+                oracle.fail(form, f"{options}: other columns")
+            part, _ = oracle.voxels_of("w.nc", [*options, "--crop", "1:4,2:4,3:9"])
+            if not np.array_equal(part, found[3:9, 2:4, 1:4], equal_nan=True):
+                oracle.fail(form, f"{options}: another box")
+    oracle.says("T", "w.nc", "+ 300 K", "--dataset", "T")
+    oracle.says("levels", "w.nc", "--vertical height shows", "--dataset", "U")
+    oracle.expect("w.nc", v["TSLB"][0], oracle.affine((3000, 2000, 3000), (0, 0, 0)),
+                  ["--dataset", "TSLB"], unit="m")
+    oracle.refuse("w.nc", "holds 7 volumes", status=2)
+    oracle.refuse("w.nc", "--vertical", ["--vertical", "depth"], 2)
+    for wrong in ("2005-13-28_00:00:00", "2005-08-28 00:00:00", "2005-08-28_00:00:0x"):
+        wrf("x.nc", form, [wrong], 1)
+        oracle.says(wrong, "x.nc", "is no date", "--dataset", "T")
+
+# What says where others lie is no volume, and does not hide the field; places
+# by two axes are counted in voxels (NEMO, ROMS, POP).
+for form in ("NETCDF4", "NETCDF3_CLASSIC"):
+    field = oracle.sample("f4", (1, 33, 36))
+    sizes = {"time_counter": None, "deptht": 4, "y": 33, "x": 36, "nvertex": 4}
+    bounds = [(name, "f4", ("y", "x", "nvertex"), oracle.sample("f4", (33, 36, 4)))
+              for name in ("bounds_lon", "bounds_lat")]
+    places = [(name, "f4", ("y", "x"), oracle.sample("f4", (33, 36)),
+               {"bounds": f"bounds_{name[4:]}"}) for name in ("nav_lat", "nav_lon")]
+    tos = ("tos", "f4", ("time_counter", "y", "x"), field, {"coordinates": "nav_lat nav_lon"})
+    write("n.nc", form, sizes, *bounds, *places, tos)
+    oracle.expect("n.nc", field, name=f"{form} a field beside bounds")
+    oracle.says(form, "n.nc", "(nav_lat nav_lon) are curvilinear")
+    oracle.says(form, "n.nc", None, "--dataset", "nav_lon")
+    oracle.expect("n.nc", bounds[0][3], options=["--dataset", "bounds_lon"])
+    write("n.nc", form, sizes, *places, tos,
+          *((name, "f4", ("time_counter", "deptht", "y", "x"),
+             oracle.sample("f4", (1, 4, 33, 36)), {"coordinates": "deptht e3t nav_lat"})
+            for name in ("e3t", "so")), axis("deptht", [1, 2, 4, 8], units="m", positive="down"))
+    oracle.tells("n.nc", quantity="so", axis_units=["", "", "m"])
+    write("n.nc", form, sizes, *bounds[1:], places[0])
+    oracle.tells("n.nc", quantity="nav_lat")
+
 # Lines of a scan that have dates are no steps of time.
 for form in FORMATS:
     a = oracle.sample("f4", (6, 7, 8))

@@ -4,7 +4,7 @@
  * After CF 2.5.1 and 8.1, and appendix A of the NetCDF Users' Guide: a value is
  * missing if it equals _FillValue or a number of missing_value, or lies outside
  * of the valid ones.  All are compared as they are stored. */
-#include "formats/cf.h"
+#include "formats/cf/model.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,10 +17,10 @@
 enum { FILL, MISSING, RANGE, LEAST, MOST, LIMITS };
 
 const char *const snow_cf_names[] = {
-    "_FillValue",    "missing_value", "valid_range", "valid_min", "valid_max",
-    "scale_factor",  "add_offset",    "_Unsigned",   "units",     "unit",
-    "standard_name", "long_name",     "description", "axis",      "calendar",
-    "positive",      "flag_values",   "flag_masks",  NULL};
+    "_FillValue",    "missing_value", "valid_range", "valid_min",   "valid_max",
+    "scale_factor",  "add_offset",    "_Unsigned",   "units",       "unit",
+    "standard_name", "long_name",     "description", "axis",        "calendar",
+    "positive",      "flag_values",   "flag_masks",  "coordinates", NULL};
 
 /* --- what a file says ----------------------------------------------------- */
 
@@ -55,6 +55,7 @@ static void take_text(const char *name, const char *text, cf_attributes *out) {
         {"axis", out->axis, sizeof out->axis, false},
         {"calendar", out->calendar, sizeof out->calendar, false},
         {"positive", out->positive, sizeof out->positive, false},
+        {"coordinates", out->coordinates, sizeof out->coordinates, false},
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         if (!strcmp(name, texts[i].name) && !(texts[i].second && *texts[i].to))
@@ -381,12 +382,21 @@ static snow_status read_data(void *user, const snow_volume_options *options,
     return snow_volume_give(status, volume, out);
 }
 
-snow_status snow_cf_read(snow_context *context, const snow_uneven *grid,
-                         cf_values *values, cf_read_fn *read, void *user,
+snow_status snow_cf_read(snow_context *context, const cf_model *model,
+                         const snow_uneven *grid, cf_values *values,
+                         cf_read_fn *read, void *user,
                          const snow_volume_options *options,
                          snow_volume_info *info, snow_volume **out) {
     stored_values s = {values, read, user};
+    cf_reading means = {context, model, read_data, &s};
+    cf_reading columns = {context, model, snow_model_means, &means};
     snow_uneven own = *grid;
     own.codes = values->codes;
-    return snow_uneven_read(context, &own, options, read_data, &s, info, out);
+    if (!model || !model->file)
+        return snow_uneven_read(context, &own, options, read_data, &s, info,
+                                out);
+    if (model->levels)
+        return snow_model_columns(&columns, options, info, out);
+    return snow_uneven_read(context, &own, options, snow_model_means, &means,
+                            info, out);
 }

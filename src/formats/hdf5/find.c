@@ -14,6 +14,9 @@
 typedef struct survey {
     int axes;      /* the fewest axes wanted */
     bool anywhere; /* not the last ones: others may have one entry */
+    const hdf5_file *file;
+    cf_aside aside; /* data sets that say where others lie */
+    bool of_aside;  /* these are wanted */
     long found;
     char first[HDF5_NAME_BYTES]; /* path of the first match */
     char list[800];              /* all matches, as far as they fit */
@@ -115,11 +118,28 @@ static void note(survey *s, const char *name, const hdf5_set *set) {
     snow_list_add(s->list, sizeof s->list, "/%s (%s)", name, sizes);
 }
 
+/* Adds the data sets that an attribute of this one names. */
+static herr_t look_aside(hid_t file, const char *name, const H5O_info_t *info,
+                         void *user) {
+    static const char *const attributes[] = {"bounds", "coordinates"};
+    survey *s = user;
+    char text[1024];
+    hid_t id =
+        info->type == H5O_TYPE_DATASET ? H5Dopen2(file, name, H5P_DEFAULT) : -1;
+    for (int i = 0; i < 2 && id >= 0; i++) {
+        snow_hdf5_text(s->file, id, attributes[i], 0, text, sizeof text);
+        snow_cf_aside_add(attributes[i], text, &s->aside);
+    }
+    snow_hdf5_drop(id);
+    return 0;
+}
+
 static herr_t look(hid_t file, const char *name, const H5O_info_t *info,
                    void *user) {
     survey *s = user;
     hdf5_set set;
-    if (info->type != H5O_TYPE_DATASET || strlen(name) + 2 > HDF5_NAME_BYTES)
+    if (info->type != H5O_TYPE_DATASET || strlen(name) + 2 > HDF5_NAME_BYTES ||
+        snow_cf_is_aside(&s->aside, name) != s->of_aside)
         return 0;
     hid_t id = H5Dopen2(file, name, H5P_DEFAULT);
     if (id < 0)
@@ -166,11 +186,13 @@ snow_status snow_hdf5_visit(snow_context *context, hid_t file,
 }
 
 /* Finds all volumes of the file; if there are none, those with further axes of
- * one entry, or images with two axes. */
+ * one entry, or images with two axes; then those that say where others lie. */
 static snow_status find_only(snow_context *context, hid_t file, survey *s) {
-    for (int way = 0; way < 3 && !s->found; way++) {
-        s->axes = way < 2 ? 3 : 2;
-        s->anywhere = way == 1;
+    SNOW_TRY(snow_hdf5_visit(context, file, look_aside, s));
+    for (int way = 0; way < 6 && !s->found; way++) {
+        s->axes = way % 3 < 2 ? 3 : 2;
+        s->anywhere = way % 3 == 1;
+        s->of_aside = way >= 3;
         SNOW_TRY(snow_hdf5_visit(context, file, look, s));
     }
     if (s->found == 1)
@@ -189,9 +211,10 @@ static snow_status find_only(snow_context *context, hid_t file, survey *s) {
                      s->found, s->list);
 }
 
-snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
-                           hdf5_set *out) {
-    survey s = {0};
+snow_status snow_hdf5_find(snow_context *context, const hdf5_file *from,
+                           const char *asked, hdf5_set *out) {
+    const hid_t file = snow_hdf5_id(from);
+    survey s = {.file = from};
     if (!asked) {
         SNOW_TRY(find_only(context, file, &s));
         asked = s.first;

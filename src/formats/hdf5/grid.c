@@ -141,6 +141,7 @@ typedef struct scales {
     snow_status status; /* the walk ends if memory does */
     snow_axis_hint hints[HDF5_MOST_AXES];
     cf_axis *axes;
+    char (*names)[32];
     bool is_netcdf; /* one of them is a dimension of NetCDF-4 */
 } scales;
 
@@ -219,7 +220,10 @@ static void use_scale(scales *s, hid_t scale, const char *path,
         int from_end = s->set->axes - 1 - uses[i].axis;
         if (uses[i].set != s->address || uses[i].axis < 0 || from_end < 0)
             continue;
+        const char *slash = strrchr(path, '/');
         s->hints[from_end] = hint_of(s, scale, path);
+        snprintf(s->names[from_end], sizeof *s->names, "%.31s",
+                 slash ? slash + 1 : path);
         s->is_netcdf |= H5Aexists(scale, "_Netcdf4Dimid") > 0;
         const hsize_t steps = s->set->sizes[uses[i].axis];
         cf_axis *axis = &s->axes[from_end];
@@ -338,8 +342,11 @@ static snow_status read_scales(scales *s) {
 
 snow_status snow_hdf5_read_axes(snow_context *context, const hdf5_file *file,
                                 const hdf5_set *set, hdf5_axes *out) {
-    scales s = {
-        .context = context, .file = file, .set = set, .axes = out->scales};
+    scales s = {.context = context,
+                .file = file,
+                .set = set,
+                .axes = out->scales,
+                .names = out->names};
     int64_t sizes[HDF5_MOST_AXES];
     memset(out, 0, sizeof *out);
     SNOW_TRY(read_scales(&s));

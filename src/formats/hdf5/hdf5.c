@@ -5,10 +5,12 @@
  * reads only the chunks that it touches. */
 #include "formats/hdf5/hdf5.h"
 #include "formats/array.h"
+#include "formats/cf/model.h"
 #include "formats/features.h"
 #include "formats/hdf5/blocks.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static bool probe_hdf5(const unsigned char *bytes, size_t size) {
@@ -124,7 +126,10 @@ typedef struct hdf5_job {
     const hdf5_set *set;
     hdf5_axes axes;
     hsize_t start[HDF5_MOST_AXES];
+    cf_attributes says;
     cf_values values;
+    cf_file parts;
+    cf_model model;
     snow_uneven grid;
 } hdf5_job;
 
@@ -164,22 +169,135 @@ static snow_status read_stored(void *user, const snow_volume_options *options,
     return snow_volume_give(status, volume, out);
 }
 
+/* Fills info, and finds where the voxels are. */
+static snow_status lay_set(hdf5_job *job, const snow_volume_options *options,
+                           snow_volume_info *info) {
+    SNOW_TRY(
+        snow_hdf5_read_axes(job->context, job->file, job->set, &job->axes));
+    snow_hdf5_attributes(job->file, job->set->id, &job->says);
+    job->values = snow_hdf5_values(job->context, job->file, job->set,
+                                   &job->axes, &job->says);
+    return pick(job->context, job->set, &job->axes, &job->values, options, info,
+                job->start);
+}
+
+/* --- other parts of the file ----------------------------------------------
+ */
+
+static bool attribute_of_file(void *user, const char *name, cf_attribute *out) {
+    const hdf5_job *job = user;
+    const hid_t root = H5Oopen(snow_hdf5_id(job->file), "/", H5P_DEFAULT);
+    const bool found =
+        root >= 0 && snow_hdf5_attribute(job->file, root, name, out);
+    snow_hdf5_drop(root);
+    return found;
+}
+
+/* Beside the data set that is read. */
+static bool open_beside(const hdf5_job *job, const char *name, hdf5_set *out) {
+    const char *path = job->set->path;
+    snprintf(out->path, sizeof out->path, "%.*s%s",
+             (int)(strrchr(path, '/') + 1 - path), path, name);
+    return snow_hdf5_open_values(snow_hdf5_id(job->file), out->path, out);
+}
+
+static int64_t axes_of(void *user, const char *name) {
+    hdf5_set set = {.spatial = false};
+    if (!open_beside(user, name, &set))
+        return 0;
+    snow_hdf5_drop(set.id);
+    return set.axes;
+}
+
+static bool letters_of(void *user, const char *name, int64_t row,
+                       char out[20]) {
+    const hdf5_job *job = user;
+    const hid_t file = snow_hdf5_id(job->file),
+                id = H5Lexists(file, name, H5P_DEFAULT) > 0
+                         ? H5Dopen2(file, name, H5P_DEFAULT)
+                         : -1,
+                type = id < 0 ? -1 : H5Dget_type(id),
+                space = id < 0 ? -1 : H5Dget_space(id);
+    hsize_t sizes[2], first[2] = {(hsize_t)row, 0}, count[2] = {1, 19};
+    memset(out, 0, 20);
+    const bool right = type >= 0 && H5Tget_class(type) == H5T_STRING &&
+                       H5Tget_size(type) == 1 &&
+                       H5Sget_simple_extent_ndims(space) == 2 &&
+                       H5Sget_simple_extent_dims(space, sizes, NULL) == 2 &&
+                       first[0] < sizes[0] && sizes[1] >= count[1] &&
+                       snow_hdf5_read_box(job->context, job->file, id, type, 2,
+                                          first, count, out) == SNOW_STATUS_OK;
+    snow_hdf5_drop(space);
+    snow_hdf5_drop(type);
+    snow_hdf5_drop(id);
+    return right;
+}
+
+static snow_status read_other(void *user, const char *name,
+                              const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    const hdf5_job *job = user;
+    hdf5_set set = {.spatial = false};
+    hdf5_job other = {.context = job->context, .file = job->file, .set = &set};
+    snow_status status = SNOW_STATUS_OK;
+    if (!open_beside(job, name, &set))
+        return snow_fail(job->context, SNOW_STATUS_BAD_INPUT,
+                         "%.100s cannot be read", name);
+    status = snow_hdf5_check_storage(job->context, set.id);
+    if (status == SNOW_STATUS_OK)
+        status = lay_set(&other, options, info);
+    if (status == SNOW_STATUS_OK)
+        status = snow_cf_read(job->context, NULL, &other.grid, &other.values,
+                              read_stored, &other, options, info, out);
+    snow_cf_release(job->context, other.axes.scales, HDF5_MOST_AXES);
+    snow_hdf5_drop(set.id);
+    return status;
+}
+
+/* What a model's grid says beside the conventions. */
+static snow_status take_model(hdf5_job *job, const char *name,
+                              const snow_volume_options *options,
+                              snow_volume_info *info) {
+    const snow_axes *roles = &job->axes.roles;
+    cf_axis axes[4] = {{0}};
+    job->parts = (cf_file){.context = job->context,
+                           .user = job,
+                           .attribute = attribute_of_file,
+                           .axes_of = axes_of,
+                           .letters = letters_of,
+                           .read = read_other};
+    for (int i = 0; i < 4; i++) {
+        const int role = i < 3 ? roles->space[i] : roles->time;
+        if (role < 0)
+            continue;
+        axes[i] = job->axes.scales[role];
+        memcpy(job->parts.axis[i], job->axes.names[role],
+               sizeof job->parts.axis[i]);
+    }
+    SNOW_TRY(snow_model_take(&job->parts, name, &job->says, options, info, axes,
+                             &job->model));
+    for (int i = 0; i < 3; i++)
+        if (roles->space[i] >= 0)
+            job->axes.scales[roles->space[i]] = axes[i];
+    return SNOW_STATUS_OK;
+}
+
+/* --- a data set -----------------------------------------------------------
+ */
+
 static snow_status read_job(hdf5_job *job, const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out) {
     const hdf5_file *file = job->file;
-    cf_attributes says;
-    SNOW_TRY(snow_hdf5_read_axes(job->context, file, job->set, &job->axes));
-    snow_hdf5_attributes(file, job->set->id, &says);
-    job->values =
-        snow_hdf5_values(job->context, file, job->set, &job->axes, &says);
-    SNOW_TRY(pick(job->context, job->set, &job->axes, &job->values, options,
-                  info, job->start));
+    const char *slash = strrchr(job->set->path, '/');
+    SNOW_TRY(lay_set(job, options, info));
+    SNOW_TRY(snow_hdf5_mean(job->context, file, job->set, &job->axes,
+                            &job->says, info, &job->values));
+    SNOW_TRY(
+        take_model(job, slash ? slash + 1 : job->set->path, options, info));
     snow_hdf5_place(job->context, file, job->set, &job->axes, options, info,
                     &job->grid);
-    SNOW_TRY(snow_hdf5_mean(job->context, file, job->set, &job->axes, &says,
-                            info, &job->values));
-    return snow_cf_read(job->context, &job->grid, &job->values, read_stored,
-                        job, options, info, out);
+    return snow_cf_read(job->context, &job->model, &job->grid, &job->values,
+                        read_stored, job, options, info, out);
 }
 
 static snow_status read_set(snow_context *context, const hdf5_file *file,
@@ -233,7 +351,7 @@ static snow_status read_step(snow_context *context, const hdf5_file *file,
     snow_status status = snow_hdf5_read_theta(context, file, own.dataset, &own,
                                               info, out, &found);
     if (!found && status == SNOW_STATUS_OK) {
-        SNOW_TRY(snow_hdf5_find(context, id, own.dataset, &set));
+        SNOW_TRY(snow_hdf5_find(context, file, own.dataset, &set));
         status = read_found(context, file, &set, &own, info, out);
         snow_hdf5_drop(set.id);
     }

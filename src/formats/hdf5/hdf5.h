@@ -103,8 +103,8 @@ snow_status snow_hdf5_refuse_strangers(snow_context *context,
 /* Opens the requested data set, or the only volume of the file.  The caller
  * closes the set's id.  Errors: SNOW_STATUS_BAD_INPUT, SNOW_STATUS_BAD_USAGE
  * (there are several; a wrong name). */
-snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
-                           hdf5_set *out);
+snow_status snow_hdf5_find(snow_context *context, const hdf5_file *file,
+                           const char *asked, hdf5_set *out);
 
 /* Reads a record of modes around an axis (openPMD, thetaMode), if the path
  * names one, a component of one, or its x or y.  Errors: SNOW_STATUS_BAD_INPUT,
@@ -144,6 +144,7 @@ snow_status snow_hdf5_read_box(snow_context *context, const hdf5_file *file,
 /* The axes of a data set, counted from the last one. */
 typedef struct hdf5_axes {
     cf_axis scales[HDF5_MOST_AXES]; /* coordinates by dimension scales */
+    char names[HDF5_MOST_AXES][32]; /* of the scales; "": none */
     snow_axes roles;
     bool colors; /* the components are red, green, blue and perhaps opacity */
     bool is_netcdf; /* some are dimensions of NetCDF-4 */
@@ -183,6 +184,10 @@ void snow_hdf5_hint_image(const hdf5_file *file, const hdf5_set *set,
 /* Reads up to `most` numbers of an attribute; returns how many there are, 0 if
  * it is missing or has other values. */
 int snow_hdf5_numbers(hid_t object, const char *name, int most, double *out);
+
+/* Reads an attribute of text or numbers; false if there is none. */
+bool snow_hdf5_attribute(const hdf5_file *file, hid_t object, const char *name,
+                         cf_attribute *out);
 
 /* Reads the attributes that the conventions have. */
 void snow_hdf5_attributes(const hdf5_file *file, hid_t object,

@@ -39,8 +39,8 @@ static void read_numbers(hid_t attribute, cf_attribute *out) {
                                               : snow_cf_number(values[i]);
 }
 
-static bool read_attribute(const hdf5_file *file, hid_t object,
-                           const char *name, cf_attribute *out) {
+bool snow_hdf5_attribute(const hdf5_file *file, hid_t object, const char *name,
+                         cf_attribute *out) {
     memset(out, 0, sizeof *out);
     if (H5Aexists(object, name) <= 0)
         return false;
@@ -57,8 +57,8 @@ static bool read_attribute(const hdf5_file *file, hid_t object,
 
 int snow_hdf5_numbers(hid_t object, const char *name, int most, double *out) {
     cf_attribute given;
-    if (!read_attribute(NULL, object, name, &given) || given.count > most ||
-        given.count > CF_MOST_NUMBERS)
+    if (!snow_hdf5_attribute(NULL, object, name, &given) ||
+        given.count > most || given.count > CF_MOST_NUMBERS)
         return 0;
     for (int64_t i = 0; i < given.count; i++)
         out[i] = given.numbers[i].value;
@@ -70,7 +70,7 @@ void snow_hdf5_attributes(const hdf5_file *file, hid_t object,
     cf_attribute given;
     snow_cf_attributes_begin(out);
     for (const char *const *name = snow_cf_names; *name; name++)
-        if (read_attribute(file, object, *name, &given))
+        if (snow_hdf5_attribute(file, object, *name, &given))
             snow_cf_take(*name, &given, out);
 }
 

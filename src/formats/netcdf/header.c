@@ -197,7 +197,7 @@ void snow_netcdf_attributes(const netcdf_header *header, snow_seekable *bytes,
                             void *user) {
     cursor c = {.context = header->context,
                 .bytes = bytes,
-                .at = v->attributes,
+                .at = v ? v->attributes : header->attributes,
                 .wide = header->version == 5 ? 8 : 4};
     take_attributes(&c, take, user);
 }
@@ -323,6 +323,7 @@ snow_status snow_netcdf_read_header(snow_context *context, snow_seekable *bytes,
         fail_header(&c, "its NetCDF header has a count below 0; it is damaged");
     out->records = streaming ? -1 : (int64_t)records;
     take_dimensions(&c, out);
+    out->attributes = c.at;
     take_attributes(&c, NULL, NULL);
     take_variables(&c, out);
     measure_records(&c, out);

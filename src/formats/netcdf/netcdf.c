@@ -7,6 +7,7 @@
  * conventions. */
 #include "formats/netcdf/netcdf.h"
 #include "formats/array.h"
+#include "formats/cf/model.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -43,23 +44,34 @@ static void note(const netcdf_header *header, const netcdf_variable *v,
     snow_list_add(list, capacity, "%s (%s)", v->name, sizes);
 }
 
+static void add_aside(void *user, const char *name, const cf_attribute *given) {
+    snow_cf_aside_add(name, given->text, user);
+}
+
 /* The only variable with three axes or, if there is none, with as many beside
- * axes of one entry, or with two. */
-static snow_status find_only(const netcdf_header *header, char *list,
-                             size_t capacity, const netcdf_variable **out) {
+ * axes of one entry, or with two; then of those that say where others lie. */
+static snow_status find_only(const netcdf_header *header, snow_seekable *bytes,
+                             char *list, size_t capacity,
+                             const netcdf_variable **out) {
     static const struct {
         int axes;
         bool anywhere;
     } ways[] = {{3, false}, {3, true}, {2, false}};
+    cf_aside aside = {""};
     int found = 0;
-    for (int n = 0; n < 3 && !found; n++)
-        for (int64_t i = 0; i < header->variable_count; i++)
-            if (is_volume(header, &header->variables[i], ways[n].axes,
-                          ways[n].anywhere)) {
-                *out = &header->variables[i];
-                note(header, *out, list, capacity);
-                found++;
-            }
+    for (int64_t i = 0; i < header->variable_count; i++)
+        snow_netcdf_attributes(header, bytes, &header->variables[i], add_aside,
+                               &aside);
+    for (int n = 0; n < 6 && !found; n++)
+        for (int64_t i = 0; i < header->variable_count; i++) {
+            const netcdf_variable *v = &header->variables[i];
+            if (!is_volume(header, v, ways[n % 3].axes, ways[n % 3].anywhere) ||
+                snow_cf_is_aside(&aside, v->name) != (n >= 3))
+                continue;
+            *out = v;
+            note(header, v, list, capacity);
+            found++;
+        }
     if (found == 1)
         return SNOW_STATUS_OK;
     if (!found)
@@ -71,25 +83,32 @@ static snow_status find_only(const netcdf_header *header, char *list,
                      list);
 }
 
-static snow_status find_variable(const netcdf_header *header, const char *asked,
+static const netcdf_variable *variable_of(const netcdf_header *header,
+                                          const char *name) {
+    for (int64_t i = 0; i < header->variable_count; i++)
+        if (!strcmp(header->variables[i].name, name))
+            return &header->variables[i];
+    return NULL;
+}
+
+static snow_status find_variable(const netcdf_header *header,
+                                 snow_seekable *bytes, const char *asked,
                                  const netcdf_variable **out) {
     char list[800] = "";
-    snow_status status = find_only(header, list, sizeof list, out);
+    snow_status status = find_only(header, bytes, list, sizeof list, out);
     if (!asked)
         return status;
     if (*asked == '/') /* the same name as in NetCDF-4 */
         asked++;
-    for (int64_t i = 0; i < header->variable_count; i++)
-        if (!strcmp(header->variables[i].name, asked)) {
-            *out = &header->variables[i];
-            if ((*out)->type && (*out)->axes >= 1 &&
-                (*out)->axes <= NETCDF_MOST_AXES)
-                return SNOW_STATUS_OK;
-            return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
-                             "%.100s is not a numeric array with one to five "
-                             "dimensions; choose another with --dataset",
-                             asked);
-        }
+    *out = variable_of(header, asked);
+    if (*out && (*out)->type && (*out)->axes >= 1 &&
+        (*out)->axes <= NETCDF_MOST_AXES)
+        return SNOW_STATUS_OK;
+    if (*out)
+        return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
+                         "%.100s is not a numeric array with one to five "
+                         "dimensions; choose another with --dataset",
+                         asked);
     return snow_fail(header->context, SNOW_STATUS_BAD_USAGE,
                      "--dataset %.200s: there is no such variable; the file "
                      "has %s",
@@ -213,46 +232,63 @@ typedef struct netcdf_job {
     const netcdf_header *header;
     const netcdf_variable *variable;
     cf_axis axes[4]; /* x, y, z, time */
+    cf_attributes says;
     cf_values values;
+    cf_file file;
+    cf_model model;
     snow_uneven grid;
     snow_array array;
+    snow_axes roles;
     bool done; /* the source is behind the voxels */
 } netcdf_job;
 
 /* Fills info, and finds where the voxels are. */
-static snow_status describe_variable(netcdf_job *job,
-                                     const snow_volume_options *options,
-                                     snow_volume_info *info) {
+static snow_status lay_variable(netcdf_job *job,
+                                const snow_volume_options *options,
+                                snow_volume_info *info) {
     const netcdf_header *header = job->header;
     const netcdf_variable *v = job->variable;
     snow_array *array = &job->array;
-    cf_attributes says;
     uint64_t steps[NETCDF_MOST_AXES];
     int64_t sizes[NETCDF_MOST_AXES], channel;
-    snow_axes roles;
     if (!lay_out(header, v, steps, &array->all))
         return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
                          "%.100s is empty or too large for any file; choose "
                          "another with --dataset",
                          v->name);
-    SNOW_TRY(assign_axes(header, job->bytes, v, sizes, &roles));
-    for (int i = 0; i < 4; i++) {
-        int role = i < 3 ? roles.space[i] : roles.time;
-        if (role >= 0)
-            SNOW_TRY(read_axis(header, job->bytes, v->axis[v->axes - 1 - role],
-                               &job->axes[i]));
-    }
-    read_attributes(header, job->bytes, v, &says);
-    job->values = snow_cf_settle(header->context, &says, v->type, true);
+    SNOW_TRY(assign_axes(header, job->bytes, v, sizes, &job->roles));
+    read_attributes(header, job->bytes, v, &job->says);
+    job->values = snow_cf_settle(header->context, &job->says, v->type, true);
     info->type = job->values.type;
-    SNOW_TRY(snow_volume_pick_axes(header->context, options, &roles, sizes,
+    SNOW_TRY(snow_volume_pick_axes(header->context, options, &job->roles, sizes,
                                    info, &channel));
-    snow_cf_time(&job->axes[3], info);
-    snow_cf_name(v->name, &says, info);
     array->first = v->begin;
-    snow_array_place(&roles, steps, channel, info, array);
+    snow_array_place(&job->roles, steps, channel, info, array);
     array->big_endian = true;
     array->more = true;
+    return SNOW_STATUS_OK;
+}
+
+/* Places the voxels, and says what they are. */
+static snow_status describe_variable(netcdf_job *job,
+                                     const snow_volume_options *options,
+                                     snow_volume_info *info) {
+    const netcdf_header *header = job->header;
+    const netcdf_variable *v = job->variable;
+    SNOW_TRY(lay_variable(job, options, info));
+    for (int i = 0; i < 4; i++) {
+        const int role = i < 3 ? job->roles.space[i] : job->roles.time;
+        if (role < 0)
+            continue;
+        const int64_t dimension = v->axis[v->axes - 1 - role];
+        snprintf(job->file.axis[i], sizeof job->file.axis[i], "%.31s",
+                 header->dimensions[dimension].name);
+        SNOW_TRY(read_axis(header, job->bytes, dimension, &job->axes[i]));
+    }
+    snow_cf_time(&job->axes[3], info);
+    snow_cf_name(v->name, &job->says, info);
+    SNOW_TRY(snow_model_take(&job->file, v->name, &job->says, options, info,
+                             job->axes, &job->model));
     snow_cf_place(header->context, job->axes, options, info, &job->grid);
     return SNOW_STATUS_OK;
 }
@@ -283,8 +319,69 @@ static snow_status read_array(void *user, const snow_volume_options *options,
 static snow_status read_job(netcdf_job *job, const snow_volume_options *options,
                             snow_volume_info *info, snow_volume **out) {
     SNOW_TRY(describe_variable(job, options, info));
-    return snow_cf_read(job->header->context, &job->grid, &job->values,
-                        read_array, job, options, info, out);
+    return snow_cf_read(job->header->context, &job->model, &job->grid,
+                        &job->values, read_array, job, options, info, out);
+}
+
+/* --- other parts of the file ----------------------------------------------
+ */
+
+typedef struct wanted_attribute {
+    const char *name;
+    cf_attribute *out;
+    bool found;
+} wanted_attribute;
+
+static void look_at_attribute(void *user, const char *name,
+                              const cf_attribute *given) {
+    wanted_attribute *wanted = user;
+    if (strcmp(name, wanted->name) != 0)
+        return;
+    *wanted->out = *given;
+    wanted->found = true;
+}
+
+static bool attribute_of_file(void *user, const char *name, cf_attribute *out) {
+    const netcdf_job *job = user;
+    wanted_attribute wanted = {name, out, false};
+    snow_netcdf_attributes(job->header, job->bytes, NULL, look_at_attribute,
+                           &wanted);
+    return wanted.found;
+}
+
+static int64_t axes_of(void *user, const char *name) {
+    const netcdf_job *job = user;
+    const netcdf_variable *v = variable_of(job->header, name);
+    return v && v->type && v->axes <= NETCDF_MOST_AXES ? v->axes : 0;
+}
+
+static bool letters_of(void *user, const char *name, int64_t row,
+                       char out[20]) {
+    const netcdf_job *job = user;
+    const netcdf_header *header = job->header;
+    const netcdf_variable *v = variable_of(header, name);
+    if (!v || v->type || v->kind != 2 || v->axes != 2 ||
+        size_of(header, v, 0) < 19 || row >= size_of(header, v, 1))
+        return false;
+    const uint64_t step =
+        v->records ? header->record_bytes : (uint64_t)size_of(header, v, 0);
+    out[19] = 0;
+    return snow_seekable_read(job->bytes, v->begin + (uint64_t)row * step, out,
+                              19) == 19;
+}
+
+static snow_status read_other(void *user, const char *name,
+                              const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    const netcdf_job *job = user;
+    netcdf_job other = {.source = job->source,
+                        .bytes = job->bytes,
+                        .header = job->header,
+                        .variable = variable_of(job->header, name),
+                        .done = true};
+    SNOW_TRY(lay_variable(&other, options, info));
+    return snow_cf_read(job->header->context, NULL, &other.grid, &other.values,
+                        read_array, &other, options, info, out);
 }
 
 static void look_for_minc(void *user, const char *name,
@@ -316,7 +413,13 @@ static snow_status read_file(snow_source *source, snow_seekable *bytes,
         return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
                          "is a MINC file, whose values are scaled slice by "
                          "slice; convert it with mnc2nii");
-    SNOW_TRY(find_variable(header, options->dataset, &job.variable));
+    SNOW_TRY(find_variable(header, bytes, options->dataset, &job.variable));
+    job.file = (cf_file){.context = header->context,
+                         .user = &job,
+                         .attribute = attribute_of_file,
+                         .axes_of = axes_of,
+                         .letters = letters_of,
+                         .read = read_other};
     snow_status status = read_job(&job, options, info, out);
     snow_cf_release(header->context, job.axes, 4);
     return status;

@@ -43,6 +43,7 @@ typedef struct netcdf_header {
     int version;
     int64_t records; /* -1: to the end of the file */
     uint64_t record_bytes;
+    uint64_t attributes; /* of the file: where they begin */
     int64_t dimension_count, variable_count;
     netcdf_dimension *dimensions;
     netcdf_variable *variables;
@@ -59,7 +60,8 @@ void snow_netcdf_free_header(netcdf_header *header);
 bool snow_netcdf_values(const netcdf_header *header, snow_seekable *bytes,
                         const netcdf_variable *v, int64_t count, double *out);
 
-/* Gives each attribute of a variable to `take`. */
+/* Gives each attribute of a variable, or where that is NULL of the file, to
+ * `take`. */
 typedef void netcdf_take_fn(void *user, const char *name,
                             const cf_attribute *attribute);
 void snow_netcdf_attributes(const netcdf_header *header, snow_seekable *bytes,

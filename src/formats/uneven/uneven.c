@@ -172,18 +172,30 @@ typedef struct axis_places {
     int64_t most;       /* of these, for one voxel */
 } axis_places;
 
+static const double *lines_of(const snow_uneven *grid, int axis) {
+    return grid->moved[axis] ? grid->moved[axis] : grid->at[axis];
+}
+
+/* The node of a line, which has moved no farther than to the ends. */
+static int64_t node_on(const snow_uneven *grid, int axis, int64_t line) {
+    const double last = (double)grid->even[axis] - 1,
+                 steps = (lines_of(grid, axis)[line] - grid->at[axis][0]) /
+                         grid->step[axis];
+    return (int64_t)fmin(fmax(floor(steps + 0.5), 0), last);
+}
+
 /* The place of a node, where `low` is the last line whose node is not beyond
  * it.  Of codes it is a line of the file. */
 static place place_of(const snow_uneven *grid, int axis, int64_t node,
                       int64_t low) {
-    const double *at = grid->at[axis], step = grid->step[axis];
-    const double position = at[0] + step * (double)node;
+    const double *at = lines_of(grid, axis);
+    const double position = grid->at[axis][0] + grid->step[axis] * (double)node;
     place p = {low, 0, 0};
-    if (node_of(at, step, low) < node) {
+    if (node_on(grid, axis, low) < node && low < grid->count[axis] - 1) {
         p.up = (position - at[low]) / (at[low + 1] - at[low]);
         return grid->codes ? (place){low + (p.up >= 0.5), 0, 0} : p;
     }
-    while (p.low > 0 && node_of(at, step, p.low - 1) == node)
+    while (p.low > 0 && node_on(grid, axis, p.low - 1) == node)
         p.low--;
     p.more = low - p.low;
     for (; grid->codes && p.more; p.more--)
@@ -212,7 +224,7 @@ static void find_places(const snow_uneven *grid, int axis, int64_t first,
     for (int64_t i = 0; i < out->count; i++) {
         out->at[i] = (place){first + i, 0, 0};
         while (at && low < count - 1 &&
-               node_of(at, grid->step[axis], low + 1) <= first + i)
+               node_on(grid, axis, low + 1) <= first + i)
             low++;
         if (at)
             out->at[i] = place_of(grid, axis, first + i, low);

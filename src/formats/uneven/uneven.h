@@ -15,12 +15,14 @@
 #include "formats/format.h"
 
 typedef struct snow_uneven {
-    int64_t count[3];    /* voxels of the file */
-    const double *at[3]; /* coordinates of all of them; NULL: an even axis */
-    int64_t even[3];     /* voxels of the even grid */
-    double step[3];      /* of the even grid, along uneven axes; may be below 0;
-                            its first voxel is at[i][0] */
-    bool codes;          /* values between two of the file mean nothing */
+    int64_t count[3];       /* voxels of the file */
+    const double *at[3];    /* coordinates of all of them; NULL: an even axis */
+    const double *moved[3]; /* where they are on the grid that `at` makes, if
+                               that is elsewhere; NULL: at `at` */
+    int64_t even[3];        /* voxels of the even grid */
+    double step[3]; /* of the even grid, along uneven axes; may be below 0;
+                       its first voxel is at[i][0] */
+    bool codes;     /* values between two of the file mean nothing */
 } snow_uneven;
 
 /* Returns whether coordinates are finite, and rise or fall throughout, not over

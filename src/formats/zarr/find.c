@@ -241,6 +241,8 @@ typedef struct survey {
     char at[ZARR_PATH_BYTES]; /* the current folder */
     const char *top;          /* the group, omitted from names */
     int axes;                 /* the fewest axes longer than 1 */
+    int way; /* 0: gathers `aside`; to 3: leaves these out; then them alone */
+    cf_aside aside;
     int depth;
     long folders, found;
     char path[ZARR_PATH_BYTES]; /* of the first match */
@@ -257,12 +259,26 @@ static bool is_wanted(const survey *s, const json_t *meta) {
 
 static snow_status survey_below(survey *s);
 
+static void gather_aside(survey *s, const zarr_node *node) {
+    static const char *const attributes[] = {"bounds", "coordinates"};
+    for (int i = 0; i < 2 && node->kind == ZARR_ARRAY; i++) {
+        const json_t *names = json_object_get(node->attributes, attributes[i]);
+        if (json_is_string(names))
+            snow_cf_aside_add(attributes[i], json_string_value(names),
+                              &s->aside);
+    }
+}
+
 static snow_status survey_node(survey *s, const zarr_node *node) {
     bool image = node->kind == ZARR_GROUP &&
                  snow_zarr_image(node->attributes, 0) != NULL;
     const char *name = s->at + strlen(s->top) + (*s->top ? 1 : 0);
     if (node->kind == ZARR_GROUP && !image)
         return survey_below(s);
+    if (!s->way)
+        gather_aside(s, node);
+    if (!s->way || snow_cf_is_aside(&s->aside, name) != (s->way > 3))
+        return SNOW_STATUS_OK;
     if (!image && !(node->kind == ZARR_ARRAY && is_wanted(s, node->meta)))
         return SNOW_STATUS_OK;
     if (!s->found++)
@@ -309,30 +325,30 @@ static snow_status find_at(const zarr_store *store, const char *path,
                            zarr_found *out);
 
 /* The only volume of a group; if there is none the only image, then the only
- * row. */
+ * row; then of those that say where others lie. */
 static snow_status take_from_group(const zarr_store *store, const char *group,
                                    zarr_found *out) {
     survey *s = snow_allocate(store->context, sizeof *s);
     if (!s)
         return SNOW_STATUS_NO_MEMORY;
     snow_status status = SNOW_STATUS_OK;
-    long found = 0;
-    for (int axes = 3; axes >= 1 && !found && status == SNOW_STATUS_OK;
-         axes--) {
-        *s = (survey){.store = store, .top = group, .axes = axes};
-        memcpy(s->at, group, strlen(group) + 1);
+    *s = (survey){.store = store, .top = group};
+    memcpy(s->at, group, strlen(group) + 1);
+    for (; s->way < 7 && !s->found && status == SNOW_STATUS_OK; s->way++) {
+        s->axes = 3 - (s->way + 2) % 3;
+        s->depth = 0;
+        s->folders = 0;
         status = survey_below(s);
-        found = s->found;
     }
-    if (status == SNOW_STATUS_OK && !found)
+    if (status == SNOW_STATUS_OK && !s->found)
         status =
             snow_zarr_fail(store, group,
                            "is not a Zarr array, and contains none; name the "
                            "folder that has a .zarray, .zgroup or zarr.json");
-    else if (status == SNOW_STATUS_OK && found > 1)
+    else if (status == SNOW_STATUS_OK && s->found > 1)
         status = snow_fail(store->context, SNOW_STATUS_BAD_USAGE,
                            "holds %ld volumes; choose one with --dataset: %s",
-                           found, s->list);
+                           s->found, s->list);
     else if (status == SNOW_STATUS_OK)
         status = find_at(store, s->path, out);
     snow_release(store->context, s);

@@ -241,7 +241,7 @@ static snow_status read_job(zarr_job *job, zarr_found *found,
     spell(found, info->storage, sizeof info->storage);
     SNOW_TRY(snow_zarr_place(found, &box->roles, info));
     describe_array(job, options, info);
-    return snow_cf_read(store->context, &job->grid, &job->cf.values,
+    return snow_cf_read(store->context, NULL, &job->grid, &job->cf.values,
                         read_stored, job, options, info, out);
 }
 
