@@ -29,8 +29,8 @@ typedef struct movie_shot {
 
 typedef struct shot_list {
     movie_shot *shots;
-    int64_t count;  /* at least 1 */
-    bool steps;     /* they are time steps, or slices */
+    int64_t count; /* at least 1 */
+    bool steps;    /* they are time steps, or slices */
     bool slices;
     int64_t looked; /* the look of all frames is chosen from so many shots, the
                        first: if one of them changes it is another movie; 0: of

@@ -45,6 +45,7 @@ void steps_free(step_files *files) {
     for (int64_t i = 0; i < files->count; i++)
         free(files->paths[i]);
     free(files->paths);
+    free(files->times);
 }
 
 /* A number of a file, and the digits that it has at least. */
@@ -327,5 +328,53 @@ int steps_find(const options *opts, step_files *out) {
             done = sign_in(path, "%") ? add_pattern(opts, path, out)
                                       : add_stars(path, out);
     }
+    return done;
+}
+
+/* How many steps a file has. */
+static int count_steps(const options *opts, snow_context *context,
+                       const char *path, int64_t *out) {
+    snow_volume_options data = data_options(opts);
+    snow_volume_info info = {.size = sizeof info};
+    data.time = 0;
+    data.each_time = true;
+    memset(data.crop, 0, sizeof data.crop);
+    int done =
+        check_status(context, snow_volume_inspect(context, path, &data, &info));
+    *out = info.times;
+    return done;
+}
+
+/* Adds the steps of a file. */
+static int add_steps(const options *opts, snow_context *context,
+                     const char *path, step_files *out) {
+    int64_t steps = 0;
+    int done = count_steps(opts, context, path, &steps);
+    int64_t *times =
+        realloc(out->times, (size_t)(out->count + steps) * sizeof *times);
+    if (!times && done == CONTINUE)
+        return steps_fail_memory();
+    out->times = times ? times : out->times;
+    for (int64_t i = 0; i < steps && done == CONTINUE; i++) {
+        out->times[out->count] = i;
+        done = add_path(out, path);
+    }
+    return done;
+}
+
+int steps_expand(const options *opts, snow_context *context,
+                 step_files *files) {
+    step_files all = {.gaps = files->gaps};
+    int64_t ends[2] = {1, 1};
+    int done = count_steps(opts, context, files->paths[0], &ends[0]);
+    if (done == CONTINUE && files->count > 1)
+        done = count_steps(opts, context, files->paths[files->count - 1],
+                           &ends[1]);
+    if (done != CONTINUE || files->count == 1 || (ends[0] < 2 && ends[1] < 2))
+        return done;
+    for (int64_t i = 0; i < files->count && done == CONTINUE; i++)
+        done = add_steps(opts, context, files->paths[i], &all);
+    steps_free(files);
+    *files = all;
     return done;
 }

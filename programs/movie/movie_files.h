@@ -6,12 +6,13 @@
 
 /* The files, in order: each operand is a file, or a pattern of numbered ones
  * (run_%04d.nrrd) or of any (run_*.nrrd), with a data set in them where they
- * have several (run_%04d.h5:/rho).  A number in the name of the data set is the file's
- * (data_%T.h5:/data/%T/rho). */
+ * have several (run_%04d.h5:/rho).  A number in the name of the data set is the
+ * file's (data_%T.h5:/data/%T/rho). */
 typedef struct step_files {
     char **paths;
     int64_t count, room;
-    bool gaps; /* numbers may be missing between others */
+    bool gaps;      /* numbers may be missing between others */
+    int64_t *times; /* of each path a step in its file; NULL: 0 of all */
 } step_files;
 
 /* Whether a path is a pattern of files: it has a number or a star, and no file
@@ -26,10 +27,14 @@ bool files_are_meant(const char *path);
 int steps_find(const options *opts, step_files *out);
 void steps_free(step_files *files);
 
-/* Makes one shot for each file.  A single file gives one shot for each time
- * step in it, unless --time selects one; the file is then inspected.  Returns
+/* Where files hold several steps, as the first or the last one does, each of
+ * these becomes an entry.  Returns CONTINUE or an exit code. */
+int steps_expand(const options *opts, snow_context *context, step_files *files);
+
+/* Makes one shot for each file.  Files give one shot for each time step in
+ * them, unless --time selects one of each; they are then inspected.  Returns
  * CONTINUE or an exit code. */
-int steps_list(const step_files *files, shot_renderer *shots, shot_list *out);
+int steps_list(step_files *files, shot_renderer *shots, shot_list *out);
 
 /* Makes the transfer function from the values of all steps, if it depends on
  * values and there are several steps; otherwise the first step decides.  Reads

@@ -81,8 +81,13 @@ static int take_range(const options *opts, int64_t *from, int64_t *count) {
     return CONTINUE;
 }
 
-int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
+int steps_list(step_files *files, shot_renderer *shots, shot_list *out) {
     const options *opts = shots->state.opts;
+    const bool given = options_given(opts, "time") && !opts->time_range;
+    int done =
+        given ? CONTINUE : steps_expand(opts, shots->state.context, files);
+    if (done != CONTINUE)
+        return done;
     movie_shot first = {files->paths[0],
                         opts->time_range ? 0 : opts->time,
                         opts->azimuth,
@@ -91,19 +96,18 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
                         0};
     out->count = files->count;
     out->steps = true;
-    const bool given = options_given(opts, "time") && !opts->time_range;
     shots->state.steps = true;
-    shots->state.each_time = files->count == 1 && !given;
-    shots->whole_files = files->count > 1 && !given;
-    if (shots->state.each_time) {
+    shots->state.each_time = (files->count == 1 || files->times) && !given;
+    shots->whole_files = files->count > 1 && !given && !files->times;
+    if (shots->state.each_time && !files->times) {
         snow_volume_info info = {.size = sizeof info};
-        int done = inspect(shots, &first, 0, &info);
+        done = inspect(shots, &first, 0, &info);
         if (done != CONTINUE)
             return done;
         out->count = info.times;
     }
     int64_t from = 0;
-    int done = take_range(opts, &from, &out->count);
+    done = take_range(opts, &from, &out->count);
     if (done != CONTINUE)
         return done;
     out->looked = look_is_fixed(opts) ? 0 : out->count;
@@ -113,7 +117,11 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     for (int64_t i = 0; i < out->count; i++) {
         movie_shot *shot = &out->shots[i];
         *shot = first;
-        if (files->count > 1) {
+        if (files->times) {
+            shot->path = files->paths[from + i];
+            shot->time = files->times[from + i];
+            shot->step = from + i;
+        } else if (files->count > 1) {
             shot->path = files->paths[from + i];
             shot->step = number_in(shot->path, from + i);
         } else {

@@ -30,7 +30,9 @@ typedef struct step_times {
 static int time_of(step_times *times, int64_t step, double *out) {
     snow_volume_options data = data_options(times->opts);
     snow_volume_info info = {.size = sizeof info};
-    data.time = times->files ? 0 : step;
+    data.time = !times->files         ? step
+                : times->files->times ? times->files->times[step]
+                                      : 0;
     data.each_time = true;
     snow_status status = snow_volume_inspect(
         times->context, times->files ? times->files->paths[step] : times->path,
@@ -188,21 +190,24 @@ static int take_input(options *opts, const char *format, ...) {
     return CONTINUE;
 }
 
-static int choose_file(options *opts, const step_files *files,
+static int choose_file(options *opts, step_files *files,
                        snow_context *context) {
+    int done = steps_expand(opts, context, files);
     step_times times = {.context = context,
                         .opts = opts,
                         .files = files,
                         .count = files->count};
     int64_t step = opts->time < 0 ? files->count + opts->time : opts->time;
-    int done = isnan(opts->moment) ? CONTINUE : nearest(&times, &step);
+    if (done == CONTINUE && !isnan(opts->moment))
+        done = nearest(&times, &step);
     if (done != CONTINUE)
         return done;
     if (step < 0 || step >= files->count)
         return fail_usage("--time: there is no step %" PRId64
                           "; %s stands for %" PRId64
-                          " files, counted from 0, or from -1 at the end",
-                          opts->time, opts->operands[0], files->count);
+                          " %s, counted from 0, or from -1 at the end",
+                          opts->time, opts->operands[0], files->count,
+                          files->times ? "steps" : "files");
     done = take_input(opts, "%s", files->paths[step]);
     if (done != CONTINUE)
         return done;
@@ -211,7 +216,7 @@ static int choose_file(options *opts, const step_files *files,
             " (counted from 0) is taken%s",
             opts->input[0], step, files->count,
             options_given(opts, "time") ? "" : "; --time N takes another");
-    opts->time = 0;
+    opts->time = files->times ? files->times[step] : 0;
     return CONTINUE;
 }
 

@@ -94,6 +94,7 @@ class Data(TypedDict, total=False):
     allow_gaps: bool | None
     suv: Literal["bw", "lbm", "bsa", "none"] | None
     levels: int | None
+    vertical: Literal["levels", "height"] | None
     z_scale: float | str | None
     mask: Path | None
     labels: str | int | None

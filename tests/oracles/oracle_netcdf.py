@@ -257,6 +257,19 @@ for form in ("NETCDF4", "NETCDF3_64BIT_OFFSET"):
                   ["--dataset", "TSLB"], unit="m")
     oracle.refuse("w.nc", "holds 7 volumes", status=2)
     oracle.refuse("w.nc", "--vertical", ["--vertical", "depth"], 2)
+    # Several files of several steps are one series.
+    for first in (0, 2):
+        wrf(f"wrfout_d01_2005-08-28_{first:02d}:00:00", form, HOURS[first:first + 2], 2,
+            SIMULATION_START_DATE=HOURS[0])
+    for options, minutes in ((0, 0), (1, 60), (2, 120), (-1, 180), ("2.4h", 120)):
+        oracle.tells("wrfout_d01_*", ["--dataset", "T", "--time", options],
+                     time_value=minutes)
+    oracle.refuse("wrfout_d01_*", "for 4 steps", ["--dataset", "T", "--time", "4"], 2)
+    made = oracle.tool("movie", "wrfout_d01_*", "--dataset", "W", "-s", "16x12", "--time",
+                       "1:4", "-o", form + "%d.png", "-y")
+    if made.returncode or sum(
+            name.startswith(form) and name.endswith(".png") for name in os.listdir(".")) != 3:
+        oracle.fail(form, f"no movie of three steps: {made.stderr}")
     for wrong in ("2005-13-28_00:00:00", "2005-08-28 00:00:00", "2005-08-28_00:00:0x"):
         wrf("x.nc", form, [wrong], 1)
         oracle.says(wrong, "x.nc", "is no date", "--dataset", "T")

@@ -165,6 +165,22 @@ with netCDF4.Dataset("ocean.nc", "w") as ocean:
         v[:], v.units = at, unit
     v = ocean.createVariable("temp", "f4", ("time", "z", "y", "x"))
     v[:], v.units = np.stack([a, a + 1, a + 2]), "K"
+for hour in (0, 2):  # as WRF writes them, two steps in each
+    with netCDF4.Dataset(f"wrfout_d01_2005-08-28_{hour:02d}:00:00", "w") as wrf:
+        wrf.DX = wrf.DY = 3000.
+        for axis, size in (("Time", None), ("DateStrLen", 19), ("west_east", 9),
+                           ("south_north", 8), ("bottom_top", 6),
+                           ("bottom_top_stag", 7)):
+            wrf.createDimension(axis, size)
+        wrf.createVariable("Times", "S1", ("Time", "DateStrLen"))[:] = np.array(
+            [list(f"2005-08-28_{hour + i:02d}:00:00") for i in (0, 1)], "S1")
+        levels = 981. * np.arange(7.)[:, None, None] + np.zeros((2, 7, 8, 9))
+        for name, values, axis in (("T", levels[:, 1:] / 100, "bottom_top"),
+                                   ("W", levels / 1000 + hour, "bottom_top_stag"),
+                                   ("PHB", levels, "bottom_top_stag"),
+                                   ("PH", 0 * levels, "bottom_top_stag")):
+            v = wrf.createVariable(name, "f4", ("Time", axis, "south_north", "west_east"))
+            v[:] = values
 END
 
 # Five times of two channels, at three levels.
