@@ -240,23 +240,25 @@ static snow_status fail_short(const word_reader *reader,
                      (unsigned long long)all, (unsigned long long)(all - got));
 }
 
-/* The sizes must be possible before anything is done with them: each number has
- * a digit and a blank. */
-static snow_status expect_grid(snow_source *source,
-                               const snow_text_grid *grid) {
+/* Bytes that the numbers have at least, a digit and a blank each; fails where
+ * no file has so many. */
+static snow_status least_bytes(snow_source *source, const snow_text_grid *grid,
+                               uint64_t *out) {
     uint64_t all = 2 * (uint64_t)grid->values;
     bool fits = true;
     for (int i = 0; i < 3; i++)
         fits = fits && snow_mul_u64(all, (uint64_t)grid->dims[i], &all);
-    if (!fits || all > (uint64_t)INT64_MAX)
-        return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
-                         "has more values than any file; its sizes are wrong");
-    return snow_source_expect(source, all - 1, "the values");
+    *out = all - 1;
+    if (fits && all <= (uint64_t)INT64_MAX)
+        return SNOW_STATUS_OK;
+    return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
+                     "has more values than any file; its sizes are wrong");
 }
 
 snow_status snow_skip_grid(snow_source *source, const snow_text_grid *grid) {
     word_reader reader = {.source = source};
-    SNOW_TRY(expect_grid(source, grid));
+    uint64_t least;
+    SNOW_TRY(least_bytes(source, grid, &least));
     for (uint64_t i = 0; i < count_of(grid); i++) {
         bool got;
         SNOW_TRY(next_word(&reader, &got));
@@ -264,6 +266,18 @@ snow_status snow_skip_grid(snow_source *source, const snow_text_grid *grid) {
             return fail_short(&reader, grid, i);
     }
     return drop_read(&reader);
+}
+
+/* Sizes are compared with the bytes that are there before memory is allocated:
+ * where these are too few, the values are counted. */
+static snow_status expect_grid(snow_source *source,
+                               const snow_text_grid *grid) {
+    const int64_t left = snow_source_remaining(source);
+    uint64_t least;
+    SNOW_TRY(least_bytes(source, grid, &least));
+    if (left >= 0 && (uint64_t)left < least)
+        return snow_skip_grid(source, grid);
+    return snow_source_expect(source, least, "the values");
 }
 
 /* Stores a value at its voxel, and where an axis is closed at its end too, if

@@ -76,7 +76,8 @@ static void no_reader_is_lost_without_memory(void **state) {
         {"png_slice", "a.png"}, {"hdf5", "a.h5"},        {"netcdf", "a.nc"},
         {"nrrd", "a.nrrd"},     {"nifti", "a.nii"},      {"metaimage", "a.mha"},
         {"den", "a.den"},       {"vth", "a.vth"},        {"jpeg", "a.jpg"},
-        {"mgh", "a.mgh"},       {"gipl", "a.gipl"},
+        {"mgh", "a.mgh"},       {"gipl", "a.gipl"},      {"cube", "a.cube"},
+        {"vasp", "CHGCAR"},
     };
     const size_t count = sizeof subjects / sizeof *subjects;
     for (size_t i = 0; i < count; i++)

@@ -232,7 +232,7 @@ static void name_sets(const vasp_file *file, snow_volume_info *info) {
     static const char *const quantities[] = {"charge density", "potential",
                                              "localization", ""};
     static const char *const units[] = {"e/angstrom^3", "eV", "", ""};
-    const bool potential = file->kind == POTENTIAL;
+    const bool spins = file->kind != CHARGE;
     snprintf(info->quantity, sizeof info->quantity, "%s",
              quantities[file->kind]);
     snprintf(info->value_unit, sizeof info->value_unit, "%s",
@@ -240,14 +240,16 @@ static void name_sets(const vasp_file *file, snow_volume_info *info) {
     if (file->sets < 2)
         return;
     snow_channels_begin(info, file->sets, false);
+    if (file->kind == UNKNOWN)
+        return;
     for (int i = 0; i < (int)file->sets; i++)
-        snow_copy_name(names[potential][i], info->channel[i].name,
+        snow_copy_name(names[spins][i], info->channel[i].name,
                        sizeof info->channel[i].name);
     if (file->sets == MOST_SETS)
         for (int i = 0; i < 2; i++)
-            snow_copy_name(potential ? i ? "B1" : "scalar"
-                           : i       ? "magnetization x"
-                                     : "total",
+            snow_copy_name(spins ? i ? "B1" : "scalar"
+                           : i   ? "magnetization x"
+                                 : "total",
                            info->channel[i].name, sizeof info->channel[i].name);
 }
 

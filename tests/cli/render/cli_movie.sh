@@ -93,9 +93,9 @@ run 0 "two steps" "$TOOL" movie run/s_0000.nrrd run/s_0020.nrrd -o 'pair%d.png' 
 not_said still
 run 0 "one step, quietly" movie run/s_0000.nrrd -o 'quiet%d.png'
 silent
-run 0 "several files of several steps" movie times.nrrd times.nrrd -o 'x%d.png'
-check "are one series" [ "$(ls x*.png | wc -l)" -eq 6 ]
-check "in their order" cmp x1.png x4.png
+run 0 "several files of several steps" movie times.nrrd times.nrrd -o 'v%d.png'
+check "are one series" [ "$(ls v*.png | wc -l)" -eq 6 ]
+check "in their order" cmp v1.png v4.png
 refused 3 "several steps between others" "times.nrrd: holds 3 time steps" \
     movie run/s_0000.nrrd times.nrrd run/s_0020.nrrd -o 'y%d.png'
 run 0 "are possible with --time" movie times.nrrd times.nrrd --time 2 -o 'w%d.png'
