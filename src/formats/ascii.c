@@ -330,6 +330,9 @@ static snow_status read_reals(word_reader *reader, const snow_text_grid *grid,
             at[axis] = 0;
         }
     }
+    /* The end of the last line is not extra data. */
+    bool more;
+    SNOW_TRY(skip_blanks(reader, &more));
     return drop_read(reader);
 }
 

@@ -113,6 +113,7 @@ for spelled in (lambda s: s.replace("E", "D"), lambda s: s.replace("E", "e"),
     oracle.expect("x.dat", read(v).T, cube_matrix((1, 1, 1), v.shape), name="cube spelled")
 oracle.expect(oracle.packed("x.dat", "a.cube.gz"), read(v).T,
               cube_matrix((1, 1, 1), v.shape), name="cube gzip")
+oracle.says("cube", "x.dat", None)
 tiny = cube(v).replace(f"{v[0, 0, 1]:13.5E}", "   0.12345-103", 1)
 found, _ = oracle.voxels_of(oracle.put("a.cube", tiny))
 if found is None or found[1, 0, 0] != 0.12345e-103:

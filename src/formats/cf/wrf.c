@@ -77,30 +77,33 @@ static void take_time(const cf_file *file, snow_volume_info *info) {
 
 /* --- heights -------------------------------------------------------------- */
 
-/* Geopotentials of a box, of which there is one more along z than levels. */
+/* Geopotentials of a box, of which there is one more along z than levels: PH
+ * and PHB of the step, and PHB of the first step of the file. */
 typedef struct heights {
-    snow_volume *part[2]; /* PH and PHB */
+    snow_volume *part[3];
     int64_t dims[3];
 } heights;
 
 static void close_heights(heights *h) {
-    snow_volume_close(h->part[0]);
-    snow_volume_close(h->part[1]);
+    for (int i = 0; i < 3; i++)
+        snow_volume_close(h->part[i]);
 }
 
-/* Reads those of the box x, y of the options. */
-static snow_status open_heights(const cf_file *file,
+/* Reads so many of them in the box x, y of the options. */
+static snow_status open_heights(const cf_file *file, int parts,
                                 const snow_volume_options *options,
                                 heights *out) {
-    static const char *const names[] = {"PH", "PHB"};
+    static const char *const names[] = {"PH", "PHB", "PHB"};
     snow_volume_options own = *options;
     own.dataset = own.component = NULL;
     own.channel = 0;
+    own.each_time = true; /* no notes of other steps */
     memset(own.crop[2], 0, sizeof own.crop[2]);
-    *out = (heights){{NULL, NULL}, {0}};
+    *out = (heights){{NULL, NULL, NULL}, {0}};
     snow_status status = SNOW_STATUS_OK;
-    for (int i = 0; i < 2 && status == SNOW_STATUS_OK; i++) {
+    for (int i = 0; i < parts && status == SNOW_STATUS_OK; i++) {
         snow_volume_info info = snow_volume_info_default("netcdf");
+        own.time = i < 2 ? own.time : 0;
         status = file->read(file->user, names[i], &own, &info, &out->part[i]);
         if (status == SNOW_STATUS_OK && i &&
             memcmp(out->dims, out->part[i]->info.dims, sizeof out->dims) != 0)
@@ -120,9 +123,16 @@ static double height_at(const heights *h, int part, int64_t column, int64_t z) {
     return (v->info.slope * stored + v->info.intercept) / GRAVITY;
 }
 
-/* The mean heights of mass points on each level, `base` of PHB alone, which
- * does not change with time; the most by which one is away from the mean, and
- * the lowest and highest of all by PHB. */
+/* The same at a mass point. */
+static double mass_height(const heights *h, int part, int64_t column,
+                          int64_t z) {
+    return (height_at(h, part, column, z) + height_at(h, part, column, z + 1)) /
+           2;
+}
+
+/* The mean heights of mass points on each level, and `base`, those of PHB in
+ * the first step; the most by which one is away from the mean, and the lowest
+ * and highest of all by that PHB. */
 static void measure(const heights *h, double *mean, double *base, double *away,
                     double ends[2]) {
     const int64_t columns = h->dims[0] * h->dims[1];
@@ -132,22 +142,35 @@ static void measure(const heights *h, double *mean, double *base, double *away,
     for (int64_t z = 0; z + 1 < h->dims[2]; z++) {
         double sums[2] = {0, 0}, least = INFINITY, most = -INFINITY;
         for (int64_t i = 0; i < columns; i++) {
-            const double ground =
-                (height_at(h, 1, i, z) + height_at(h, 1, i, z + 1)) / 2;
             const double all =
-                ground +
-                (height_at(h, 0, i, z) + height_at(h, 0, i, z + 1)) / 2;
+                             mass_height(h, 0, i, z) + mass_height(h, 1, i, z),
+                         first = mass_height(h, 2, i, z);
             sums[0] += all;
-            sums[1] += ground;
+            sums[1] += first;
             least = fmin(least, all);
             most = fmax(most, all);
-            ends[0] = fmin(ends[0], ground);
-            ends[1] = fmax(ends[1], ground);
+            ends[0] = fmin(ends[0], first);
+            ends[1] = fmax(ends[1], first);
         }
         mean[z] = sums[0] / (double)columns;
         base[z] = sums[1] / (double)columns;
         *away = fmax(*away, fmax(most - mean[z], mean[z] - least));
     }
+}
+
+/* The grid is made of rounded heights, since those of PHB change a little
+ * between steps and files where nests feed back, and a series has one grid. */
+static void round_heights(double *base, int64_t count, double ends[2]) {
+    double step = INFINITY;
+    for (int64_t i = 1; i < count; i++)
+        step = fmin(step, fabs(base[i] - base[i - 1]));
+    if (!(step > 0) || !isfinite(step))
+        return;
+    const double unit = pow(10, floor(log10(step) - 0.5));
+    for (int64_t i = 0; i < count; i++)
+        base[i] = unit * floor(base[i] / unit + 0.5);
+    ends[0] = unit * floor(ends[0] / unit);
+    ends[1] = unit * ceil(ends[1] / unit);
 }
 
 /* Even heights for columns: as many as resampled levels have. */
@@ -171,7 +194,7 @@ static void plan_columns(const cf_axis *levels, const double ends[2],
     info->dims[2] = count;
 }
 
-/* Places the levels; `rows` has room for three numbers of each. */
+/* Places the levels; `rows` has room for two numbers of each. */
 static void place_levels(const cf_file *file, const heights *h, double *rows,
                          const snow_volume_options *options,
                          snow_volume_info *info, cf_axis *z, cf_model *out) {
@@ -182,6 +205,7 @@ static void place_levels(const cf_file *file, const heights *h, double *rows,
     snow_cf_attributes_begin(&says);
     memcpy(says.units, "m", 2);
     measure(h, rows + count, rows, &away, ends);
+    round_heights(rows, count, ends);
     snow_cf_measure(rows, count, &says, &levels);
     if (!levels.uneven && !levels.even)
         return;
@@ -210,7 +234,7 @@ static snow_status take_heights(const cf_file *file,
         file->axes_of(file->user, "PHB") < 3)
         return SNOW_STATUS_OK;
     memset(whole.crop, 0, sizeof whole.crop);
-    snow_status status = open_heights(file, &whole, &h);
+    snow_status status = open_heights(file, 3, &whole, &h);
     const bool fit = status == SNOW_STATUS_OK && info->dims[2] > 1 &&
                      h.dims[2] == info->dims[2] + 1;
     double *rows = fit ? snow_allocate_array(
@@ -278,7 +302,7 @@ static snow_status make_columns(const cf_model *model,
                                 snow_volume *to) {
     heights h;
     double *rows = NULL;
-    snow_status status = open_heights(model->file, options, &h);
+    snow_status status = open_heights(model->file, 2, options, &h);
     if (status == SNOW_STATUS_OK &&
         (h.dims[0] != from->info.dims[0] || h.dims[1] != from->info.dims[1] ||
          h.dims[2] != model->levels + 1))
