@@ -20,14 +20,15 @@ static void check_message(const char *text, size_t length) {
     if (length > MESSAGE_BYTES || !m.tree)
         abort();
     if (m.kind == MESSAGE_SET)
-        json_object_foreach((json_t *)m.recipe, key,
-                            value) if (!message_may_set(key)) abort();
+        json_object_foreach(m.recipe, key, value) if (!message_may_set(key))
+            abort();
     char *written = json_dumps(m.tree, JSON_COMPACT | JSON_REAL_PRECISION(17));
     if (!written)
         abort();
     if (strlen(written) <= MESSAGE_BYTES) {
         if (message_read(written, strlen(written), &again) ||
-            again.kind != m.kind || again.n != m.n || again.on != m.on)
+            again.kind != m.kind || again.n != m.n || again.on != m.on ||
+            (m.kind == MESSAGE_SET && *again.left_out))
             abort();
         message_free(&again);
     }

@@ -113,23 +113,41 @@ bool message_has_size(const json_t *size) {
            width <= MESSAGE_SIDE && height <= MESSAGE_SIDE;
 }
 
+/* Whether a page may give a key this value; files are named by nobody but the
+ * command line. */
+static bool is_settable(const char *key, const json_t *value) {
+    for (size_t i = 0; message_switches(i); i++)
+        if (strcmp(message_switches(i), key) == 0)
+            return json_is_null(value) || json_is_true(value);
+    return message_may_set(key) &&
+           (strcmp(key, "size") != 0 || message_has_size(value));
+}
+
+/* Adds a name to those that are left out, or "..." where it has no room. */
+static void note_left_out(message *m, const char *key) {
+    static const char more[] = ", ...";
+    size_t used = strlen(m->left_out), most = sizeof m->left_out;
+    const char *before = used ? ", " : "Left out, as a page cannot set it: ";
+    if (used + strlen(before) + strlen(key) + sizeof more <= most)
+        snprintf(m->left_out + used, most - used, "%s%s", before, key);
+    else if (used && strcmp(m->left_out + used - strlen(more), more) != 0)
+        snprintf(m->left_out + used, most - used, more);
+    else if (!used)
+        snprintf(m->left_out, most, "%s...", before);
+}
+
 static const char *read_set(message *m) {
     const char *key;
     json_t *value;
+    void *next;
     m->recipe = json_object_get(m->tree, "recipe");
     if (!read_n(m->tree, &m->n) || !json_is_object(m->recipe))
         return "set: needs a number n and a recipe";
-    json_object_foreach((json_t *)m->recipe, key, value) {
-        if (!message_may_set(key))
-            return "set: has a key that only the command line can set";
-        if (strcmp(key, "size") == 0 && !message_has_size(value))
-            return "set: a picture has 1 to 4096 pixels a side";
-    }
-    for (size_t i = 0; message_switches(i); i++) {
-        value = json_object_get(m->recipe, message_switches(i));
-        if (value && !json_is_null(value) && !json_is_true(value))
-            return "set: mask and overlay are switched by null and true; only "
-                   "the command line names their files";
+    json_object_foreach_safe(m->recipe, next, key, value) {
+        if (is_settable(key, value))
+            continue;
+        note_left_out(m, key);
+        json_object_del(m->recipe, key);
     }
     return NULL;
 }
@@ -160,13 +178,13 @@ static const char *read_kind(message *m) {
                 {"ack", MESSAGE_ACK, read_ack},
                 {"ask", MESSAGE_ASK, read_ask}};
     const char *name = json_string_value(json_object_get(m->tree, "t"));
-    for (size_t i = 0; name && i < sizeof rows / sizeof *rows; i++) {
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (strcmp(rows[i].name, name) != 0)
             continue;
         m->kind = rows[i].kind;
         return rows[i].read(m);
     }
-    return "a message needs a known kind t";
+    return "Left out, as messages of its kind t are not known.";
 }
 
 const char *message_read(const char *text, size_t length, message *out) {
@@ -174,12 +192,16 @@ const char *message_read(const char *text, size_t length, message *out) {
     if (length > MESSAGE_BYTES || !is_shallow(text, length))
         return "a message has at most 65,536 bytes and 8 levels";
     out->tree = json_loadb(text, length, JSON_REJECT_DUPLICATES, NULL);
-    const char *wrong = json_is_object(out->tree)
-                            ? read_kind(out)
-                            : "a message must be one JSON object";
-    if (wrong)
+    if (!json_is_string(json_object_get(out->tree, "t"))) {
         message_free(out);
-    return wrong;
+        return "a message must be one JSON object with a kind t";
+    }
+    const char *wrong = read_kind(out);
+    if (wrong) {
+        out->kind = MESSAGE_NONE;
+        snprintf(out->left_out, sizeof out->left_out, "%s", wrong);
+    }
+    return NULL;
 }
 
 void message_free(message *m) {

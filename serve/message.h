@@ -25,22 +25,25 @@ typedef enum message_kind {
     MESSAGE_SET,
     MESSAGE_MOVING,
     MESSAGE_ACK,
-    MESSAGE_ASK
+    MESSAGE_ASK,
+    MESSAGE_NONE /* nothing is done, and `left_out` says why */
 } message_kind;
 
 typedef struct message {
     message_kind kind;
-    uint32_t n;           /* of set and ack */
-    bool on;              /* of moving */
-    bool webp;            /* of hello: the page can show WebP */
-    const char *token;    /* of hello */
-    const char *what;     /* of ask */
-    const json_t *recipe; /* of set: keys that change; null takes one out */
-    json_t *tree;         /* owns the texts */
+    uint32_t n;         /* of set and ack */
+    bool on;            /* of moving */
+    bool webp;          /* of hello: the page can show WebP */
+    const char *token;  /* of hello */
+    const char *what;   /* of ask */
+    json_t *recipe;     /* of set: keys that change; null takes one out */
+    char left_out[160]; /* what was not understood, for the page; "": nothing */
+    json_t *tree;       /* owns the texts */
 } message;
 
 /* Reads a text.  Returns NULL, and message_free must follow; or what is wrong
- * with it, and there is nothing to free. */
+ * with it where it is no JSON object of a kind within the limits: then there is
+ * nothing to free, and who says so is no page of ours. */
 const char *message_read(const char *text, size_t length, message *out);
 void message_free(message *m);
 

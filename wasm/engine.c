@@ -98,7 +98,7 @@ static void set(const message *m) {
     set_log_note(&e.sets, m->n, revision);
     if (fault)
         answer_said(e.box, CLIENT, fault);
-    if (fault || state_wrote(e.state))
+    if (fault || *m->left_out || state_wrote(e.state))
         outbox_put(e.box, state_message(e.state, 0, 0));
     free(fault);
 }
@@ -116,10 +116,10 @@ static void take(message *m) {
 EMSCRIPTEN_KEEPALIVE void engine_hear(const char *text, size_t length) {
     message m;
     const char *wrong = message_read(text, length, &m);
-    if (wrong) {
-        answer_said(e.box, CLIENT, wrong);
+    if (wrong || *m.left_out)
+        answer_said(e.box, CLIENT, wrong ? wrong : m.left_out);
+    if (wrong)
         return;
-    }
     take(&m);
     message_free(&m);
 }

@@ -170,11 +170,18 @@ class Viewing:
         try:
             self._merge(changes)
         except (TypeError, ValueError) as error:
-            page.sets[-1] = (page.sets[-1][0], self.revision)
             self._say(name, str(error))
-            self._state(to=name)
+            self._merge_one_by_one(changes)
+            page.sets[-1] = (page.sets[-1][0], self.revision)
+            self._state()
             return
         self._state(but=name)
+
+    def _merge_one_by_one(self, changes: dict[str, Any]) -> None:
+        """What is wrong is left out."""
+        for key, value in changes.items():
+            with contextlib.suppress(TypeError, ValueError):
+                self._merge({key: value})
 
     def _merge(self, changes: dict[str, Any]) -> None:
         strange = [key for key in changes if key not in SETTABLE]

@@ -180,7 +180,8 @@ static void set(listener *l, client *c, const message *m) {
     }
     if (fault)
         answer_said(l->box, c->id, fault);
-    if (fault || state_wrote(l->state)) /* what this page has not said */
+    if (fault || *m->left_out ||
+        state_wrote(l->state)) /* not said by the page */
         send_state(l, 0, 0);
     else if (l->count > 1)
         send_state(l, 0, c->id);
@@ -190,6 +191,8 @@ static void set(listener *l, client *c, const message *m) {
 static int take(listener *l, client *c, message *m) {
     if (!c->id && m->kind != MESSAGE_HELLO)
         return close_with(c->wsi, CLOSE_SECRET, "hello comes first.");
+    if (*m->left_out)
+        answer_said(l->box, c->id, m->left_out);
     switch (m->kind) {
     case MESSAGE_HELLO:
         return c->id ? 0 : greet(l, c, m);
@@ -213,6 +216,8 @@ static int take(listener *l, client *c, message *m) {
             answer_none(l->box, c->id, m->tree);
             answer_said(l->box, c->id, "ask: too many questions wait");
         }
+        break;
+    case MESSAGE_NONE:
         break;
     }
     if (client_has_more(c))

@@ -143,8 +143,7 @@ def odd_messages(server):
         "a binary message": lambda p: p.send_frame(0x82, b"{}"),
         "a reserved bit": lambda p: p.send_frame(0xC1, b"{}"),
         "an unknown opcode": lambda p: p.send_frame(0x83, b"{}"),
-        "a file in a recipe": lambda p: p.say(
-            {"t": "set", "n": 1, "recipe": {"mask": "/etc/passwd"}}),
+        "what is no JSON": lambda p: p.say(b"{]"),
         "pieces without an end": lambda p: [
             p.send_frame(0x01 if i == 0 else 0x00, b"x" * 8192)
             for i in range(10)],
@@ -168,6 +167,17 @@ def odd_messages(server):
         check(f"so is time {time_of}", said and '"time"' in said["text"], said)
     page.set(4, time="last")
     check("the last step is taken", page.receive_picture(2, 4) is not None)
+    for odd, name in (({"t": "set", "n": 5, "recipe": {
+            "mask": "/etc/passwd", "input": "/etc/passwd", "elevation": 11}}, "mask, input"),
+                      ({"t": "set", "recipe": {}}, "set: "), ({"t": "turn"}, "kind"),
+                      ({"t": "ask", "what": 7}, "ask: ")):
+        page.say(odd)
+        said = page.receive_text("said")
+        check(f"what a page cannot say is named and left out: {name}",
+              said and name in said["text"], said)
+    state = Page(server).receive_text("state")["recipe"]
+    check("the rest is taken, and no file", state["elevation"] == 11 and
+          not {"mask", "input"} & set(state), state)
     page.question("nothing")
     check("and so is a wrong question", page.receive_text("said") is not None)
     page.close()

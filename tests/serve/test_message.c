@@ -44,17 +44,29 @@ static void messages_are_read(void **state) {
     message_free(&m);
 }
 
-static void what_is_no_message_is_refused(void **state) {
+static void what_is_no_object_is_refused(void **state) {
     (void)state;
-    static const char *const bad[] = {
-        "",
-        "{",
-        "[]",
-        "17",
-        "null",
-        "\"x\"",
-        "{}",
-        "{\"t\":1}",
+    static const char *const bad[] = {"",
+                                      "{",
+                                      "[]",
+                                      "17",
+                                      "null",
+                                      "\"x\"",
+                                      "{}",
+                                      "{\"t\":1}",
+                                      "{\"t\":\"ack\",\"n\":1}x",
+                                      "{\"t\":\"ack\",\"n\":1,\"n\":2}",
+                                      "{\"t\":\"ack\",\"n\":NaN}"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_refused(bad[i], strlen(bad[i]));
+    assert_refused("{\"t\":\"ask\",\"what\":\"\xff\xfe\"}", 23);
+    assert_refused("{\"t\":\"ack\",\"n\":1}\0", 18);
+}
+
+/* Nothing is done, and the page gets to know why. */
+static void what_says_nothing_is_named(void **state) {
+    (void)state;
+    static const char *const odd[] = {
         "{\"t\":\"nothing\"}",
         "{\"t\":\"hello\"}",
         "{\"t\":\"hello\",\"token\":1}",
@@ -69,14 +81,29 @@ static void what_is_no_message_is_refused(void **state) {
         "{\"t\":\"ack\"}",
         "{\"t\":\"ack\",\"n\":\"1\"}",
         "{\"t\":\"ask\"}",
-        "{\"t\":\"ask\",\"what\":1}",
-        "{\"t\":\"ack\",\"n\":1}x",
-        "{\"t\":\"ack\",\"n\":1,\"n\":2}",
-        "{\"t\":\"ack\",\"n\":NaN}"};
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-        assert_refused(bad[i], strlen(bad[i]));
-    assert_refused("{\"t\":\"ask\",\"what\":\"\xff\xfe\"}", 23);
-    assert_refused("{\"t\":\"ack\",\"n\":1}\0", 18);
+        "{\"t\":\"ask\",\"what\":1}"};
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
+        message m = read_good(odd[i]);
+        if (m.kind != MESSAGE_NONE || !*m.left_out)
+            fail_msg("%s is taken", odd[i]);
+        message_free(&m);
+    }
+}
+
+/* Of a key and one that is good, only the other is left. */
+static void assert_left_out(const char *key, const char *value) {
+    char text[256], wanted[256];
+    snprintf(text, sizeof text,
+             "{\"t\":\"set\",\"n\":1,\"recipe\":{\"zoom\":2,\"%s\":%s}}", key,
+             value);
+    snprintf(wanted, sizeof wanted, "Left out, as a page cannot set it: %s",
+             key);
+    message m = read_good(text);
+    assert_int_equal(m.kind, MESSAGE_SET);
+    assert_string_equal(m.left_out, wanted);
+    assert_int_equal(json_object_size(m.recipe), 1);
+    assert_non_null(json_object_get(m.recipe, "zoom"));
+    message_free(&m);
 }
 
 static void a_page_names_no_file(void **state) {
@@ -86,26 +113,37 @@ static void a_page_names_no_file(void **state) {
         "series",  "overwrite", "threads", "isa",        "dims", "type",
         "offset",  "endian",    "spacing", "allow-gaps", "verb", "version",
         "quality", "method",    "config",  "",           "x"};
-    char text[128];
     for (size_t i = 0; i < sizeof foreign / sizeof *foreign; i++) {
         assert_false(message_may_set(foreign[i]));
-        snprintf(text, sizeof text,
-                 "{\"t\":\"set\",\"n\":1,\"recipe\":{\"%s\":null}}",
-                 foreign[i]);
-        assert_refused(text, strlen(text));
+        assert_left_out(foreign[i], "null");
     }
     assert_true(message_may_set("azimuth"));
     static const char *const masks[] = {"\"m.nrrd\"", "\"\"", "[]",
                                         "{}",         "1",    "false"};
-    for (size_t i = 0; i < 2 * (sizeof masks / sizeof *masks); i++) {
-        snprintf(text, sizeof text,
-                 "{\"t\":\"set\",\"n\":1,\"recipe\":{\"%s\":%s}}",
-                 i % 2 ? "mask" : "overlay", masks[i / 2]);
-        assert_refused(text, strlen(text));
-    }
-    message m = read_good("{\"t\":\"set\",\"n\":1,\"recipe\":{\"mask\":true}}");
+    for (size_t i = 0; i < 2 * (sizeof masks / sizeof *masks); i++)
+        assert_left_out(i % 2 ? "mask" : "overlay", masks[i / 2]);
+    message m = read_good("{\"t\":\"set\",\"n\":1,\"recipe\":"
+                          "{\"mask\":true,\"overlay\":null}}");
+    assert_int_equal(json_object_size(m.recipe), 2);
     message_free(&m);
-    m = read_good("{\"t\":\"set\",\"n\":1,\"recipe\":{\"mask\":null}}");
+}
+
+static void many_names_that_are_left_out_end_in_dots(void **state) {
+    (void)state;
+    static char text[40000];
+    size_t at = (size_t)sprintf(text, "{\"t\":\"set\",\"n\":1,\"recipe\":{");
+    for (int i = 0; i < 2000; i++)
+        at += (size_t)sprintf(text + at, "\"key %d\":0,", i);
+    sprintf(text + at, "\"zoom\":3}}");
+    message m = read_good(text);
+    assert_non_null(strstr(m.left_out, "key 0, key 1, key 2"));
+    assert_string_equal(m.left_out + strlen(m.left_out) - 5, ", ...");
+    assert_int_equal(json_object_size(m.recipe), 1);
+    message_free(&m);
+    snprintf(text, sizeof text,
+             "{\"t\":\"set\",\"n\":1,\"recipe\":{\"%0300d\":1}}", 7);
+    m = read_good(text);
+    assert_string_equal(m.left_out, "Left out, as a page cannot set it: ...");
     message_free(&m);
 }
 
@@ -114,14 +152,11 @@ static void pictures_have_a_largest_size(void **state) {
     static const char *const sizes[] = {"[0,10]", "[10,4097]", "[4097,10]",
                                         "[10]",   "[1,2,3]",   "\"10x10\"",
                                         "512",    "[1.5,2]",   "null"};
-    char text[128];
-    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-        snprintf(text, sizeof text,
-                 "{\"t\":\"set\",\"n\":1,\"recipe\":{\"size\":%s}}", sizes[i]);
-        assert_refused(text, strlen(text));
-    }
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
+        assert_left_out("size", sizes[i]);
     message m =
         read_good("{\"t\":\"set\",\"n\":1,\"recipe\":{\"size\":[4096,4096]}}");
+    assert_int_equal(json_object_size(m.recipe), 1);
     message_free(&m);
 }
 
@@ -187,8 +222,10 @@ static void the_head_of_a_picture_is_little_endian(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(messages_are_read),
-        cmocka_unit_test(what_is_no_message_is_refused),
+        cmocka_unit_test(what_is_no_object_is_refused),
+        cmocka_unit_test(what_says_nothing_is_named),
         cmocka_unit_test(a_page_names_no_file),
+        cmocka_unit_test(many_names_that_are_left_out_end_in_dots),
         cmocka_unit_test(pictures_have_a_largest_size),
         cmocka_unit_test(nesting_has_a_limit),
         cmocka_unit_test(length_has_a_limit),
