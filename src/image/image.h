@@ -88,7 +88,7 @@ typedef struct snow_levels {
     int samples;  /* per pixel: 1 grey, 2 grey and alpha, 3 or 4 colour */
     int channels; /* per pixel before that: 2 or 4 */
     float *drawn;
-    double *row;
+    double *row;          /* of some pixels */
     unsigned char *bytes; /* of the last row */
 } snow_levels;
 

@@ -7,6 +7,9 @@
 
 #include <string.h>
 
+/* Pixels that become levels at once. */
+#define SOME 16
+
 /* A grey picture is written in colour if its background or its overlay has
  * colour, or if the file format has no grey. */
 static void plan(const snow_image *image, const snow_image_options *options,
@@ -30,8 +33,9 @@ snow_status snow_levels_begin(const snow_image *image,
     snow_context *context = image->context;
     plan(image, options, colored, out);
     uint64_t count = (uint64_t)image->width * (uint64_t)out->samples;
+    uint64_t some = (uint64_t)SOME * (uint64_t)out->samples;
     uint64_t drawn = (uint64_t)image->width * (uint64_t)out->channels;
-    SNOW_TRY(SNOW_RESERVE(context, out->row, 0, count));
+    SNOW_TRY(SNOW_RESERVE(context, out->row, 0, some));
     SNOW_TRY(SNOW_RESERVE(context, out->bytes, 0, 2 * count));
     return SNOW_RESERVE(context, out->drawn, 0, drawn);
 }
@@ -60,19 +64,45 @@ void snow_image_draw_some(const snow_image *image, const snow_overlay *overlay,
         snow_overlay_draw(overlay, light, y, x, count, channels, out);
 }
 
-const unsigned char *snow_levels_row(snow_levels *l, int y) {
-    int width = l->image->width;
-    size_t count = (size_t)width * (size_t)l->samples;
-    snow_image_draw_some(l->image, l->overlay, l->background, y, 0, width,
-                         l->channels, l->drawn);
-    if (l->background)
-        snow_flatten_row(l->drawn, width, l->channels, l->background,
-                         l->samples, l->row);
+/* Some pixels, of so many channels, which the compiler knows. */
+static inline void level_some(snow_levels *l, const float *drawn, int count,
+                              int channels, unsigned char *out) {
+    const size_t samples = (size_t)count * (size_t)l->samples;
+    if (l->background && l->samples == 1)
+        snow_flatten_row(drawn, count, channels, l->background, 1, l->row);
+    else if (l->background)
+        snow_flatten_row(drawn, count, channels, l->background, 3, l->row);
     else
-        snow_straighten_row(l->drawn, width, l->channels, l->row);
+        snow_straighten_row(drawn, count, channels, l->row);
     if (l->bits == 8)
-        snow_quantise_8(l->row, count, l->bytes);
+        snow_quantise_8(l->row, samples, out);
     else
-        snow_quantise_16(l->row, count, l->bytes);
+        snow_quantise_16(l->row, samples, out);
+}
+
+/* Runs of pixels where nothing is are copies of the first one. */
+const unsigned char *snow_levels_row(snow_levels *l, int y) {
+    static const float nothing[SOME * 4];
+    const int width = l->image->width, channels = l->channels;
+    const size_t bytes = (size_t)(l->samples * l->bits / 8);
+    const unsigned char *blank = NULL;
+    snow_image_draw_some(l->image, l->overlay, l->background, y, 0, width,
+                         channels, l->drawn);
+    for (int x = 0; x < width; x += SOME) {
+        const int count = width - x < SOME ? width - x : SOME;
+        const float *drawn = l->drawn + (size_t)x * (size_t)channels;
+        unsigned char *out = l->bytes + (size_t)x * bytes;
+        const bool empty =
+            count == SOME &&
+            !memcmp(drawn, nothing, (size_t)(SOME * channels) * sizeof *drawn);
+        if (empty && blank)
+            memcpy(out, blank, SOME * bytes);
+        else if (channels == 2)
+            level_some(l, drawn, count, 2, out);
+        else
+            level_some(l, drawn, count, 4, out);
+        if (empty)
+            blank = out;
+    }
     return l->bytes;
 }

@@ -2,14 +2,15 @@
  * the interesting voxels that can be seen, of one process or of all ranks'
  * parts.
  *
- * A row's first and last interesting voxel bound the others of it, in
- * perspective too. Bounds are largest values, which do not depend on the order
- * of rows, threads and ranks. */
+ * The corners of their convex hull bound all of them, in perspective too.
+ * Bounds are largest values, which do not depend on the order of rows, threads
+ * and ranks. */
 #include "base/monitor.h"
 #include "base/vec3.h"
 #include "comm/comm.h"
 #include "parallel/fit_object.h"
 #include "render/job.h"
+#include "transform/hull.h"
 #include "volume/stream.h"
 
 #include <math.h>
@@ -34,8 +35,11 @@ typedef struct fit {
     double (*margins)[3]; /* of each: half a voxel along right, up and back */
     size_t count;
     snow_interesting_fn *visit; /* of the present walk */
-    double (*bounds)[BOUNDS];   /* of each worker */
-    snow_fit_object object;     /* what can be seen */
+    snow_extent part;           /* of the present slab */
+    uint32_t (*rows)[2];    /* the first and last column of its rows that can be
+                               seen; a first one behind the last: none */
+    snow_hull hull;         /* of all these */
+    snow_fit_object object; /* what can be seen */
 } fit;
 
 /* Sides of a turn from which is decided what can be seen. */
@@ -109,30 +113,39 @@ static void add_row(void *of, const snow_interesting_row *row) {
     snow_fit_object_add(&f->object, row);
 }
 
-static void bound_row(void *of, const snow_interesting_row *row) {
+static void end_row(void *of, const snow_interesting_row *row) {
     const fit *f = of;
+    const snow_extent *part = &f->part;
+    const uint32_t first = (uint32_t)(part->first[0] - row->stored);
     size_t ends[2];
-    const bool any = snow_fit_object_trim(&f->object, row, &ends[0], &ends[1]);
-    for (int side = 0; any && side < 2; side++) {
-        const uint32_t column = row->columns[ends[side]];
-        const double voxel[3] = {(double)(row->stored + column), (double)row->y,
-                                 (double)row->z};
-        add_voxel(f, voxel, f->bounds[row->worker]);
-    }
+    if (!snow_fit_object_trim(&f->object, row, &ends[0], &ends[1]))
+        return;
+    uint32_t *out = f->rows[(row->z - part->first[2]) * part->count[1] +
+                            row->y - part->first[1]];
+    for (int n = 0; n < 2; n++)
+        out[n] = row->columns[ends[n]] - first;
 }
 
 static snow_status visit_slab(const snow_volume *slab, void *user) {
-    const fit *f = user;
+    fit *f = user;
+    const bool ends = f->visit == end_row;
     const snow_interesting_walk walk = {
         .volume = slab,
         .transfer = f->transfer,
         .threshold = f->settings.threshold,
         .exponent = 1,
-        .only_counts = f->visit == bound_row,
+        .only_counts = ends,
         .isa = f->settings.isa,
         /* under a limit there may be no room for more row blocks */
         .threads = f->context->limit ? 1 : f->settings.threads};
-    return snow_visit_interesting(&walk, f->visit, user);
+    snow_volume_find_extent(slab, &f->part);
+    const int64_t rows = f->part.count[1] * f->part.count[2];
+    if (ends)
+        SNOW_TRY(SNOW_RESERVE(f->context, f->rows, 0, rows));
+    for (int64_t n = 0; ends && n < rows; n++)
+        f->rows[n][0] = 1, f->rows[n][1] = 0;
+    SNOW_TRY(snow_visit_interesting(&walk, f->visit, user));
+    return ends ? snow_hull_add(&f->hull, &f->part, f->rows) : SNOW_STATUS_OK;
 }
 
 static snow_status visit_slabs(fit *f, const snow_volume *volume,
@@ -143,36 +156,37 @@ static snow_status visit_slabs(fit *f, const snow_volume *volume,
 }
 
 /* The middles of the voxels at the corners. */
-static void bound_box(const fit *f) {
+static void bound_box(const fit *f, double bounds[BOUNDS]) {
     for (int corner = 0; corner < 8; corner++) {
         double voxel[3];
         for (int i = 0; i < 3; i++)
             voxel[i] = corner >> i & 1 ? (double)(f->whole.dims[i] - 1) : 0;
-        add_voxel(f, voxel, f->bounds[0]);
+        add_voxel(f, voxel, bounds);
     }
 }
 
 /* Collective.  One walk over what is shown. */
-static snow_status find_bounds(fit *f, snow_comm *comm,
-                               const snow_volume *volume, double out[BOUNDS]) {
+static snow_status find_hull(fit *f, snow_comm *comm,
+                             const snow_volume *volume) {
     snow_status status = SNOW_STATUS_OK;
-    for (int i = 0; i < f->settings.threads; i++)
-        begin_bounds(f->bounds[i]);
     if (f->transfer)
-        status = visit_slabs(f, volume, bound_row);
+        status = visit_slabs(f, volume, end_row);
+    if (status == SNOW_STATUS_OK)
+        status = snow_hull_end(&f->hull);
+    return comm ? snow_comm_agree_status(comm, status) : status;
+}
+
+/* Collective. */
+static snow_status find_bounds(const fit *f, snow_comm *comm,
+                               double out[BOUNDS]) {
     begin_bounds(out);
-    for (int i = 0; i < f->settings.threads; i++)
-        for (int n = 0; n < BOUNDS; n++)
-            out[n] = fmax(out[n], f->bounds[i][n]);
-    if (comm) {
-        SNOW_TRY(snow_comm_agree_status(comm, status));
-        status = snow_comm_reduce_doubles(comm, out, BOUNDS, SNOW_REDUCE_MAX);
-    }
-    if (status == SNOW_STATUS_OK && !(out[0] > -INFINITY)) {
-        bound_box(f);
-        memcpy(out, f->bounds[0], sizeof *f->bounds);
-    }
-    return status;
+    for (size_t n = 0; n < f->hull.count; n++)
+        add_voxel(f, f->hull.points[n], out);
+    if (comm)
+        SNOW_TRY(snow_comm_reduce_doubles(comm, out, BOUNDS, SNOW_REDUCE_MAX));
+    if (!(out[0] > -INFINITY))
+        bound_box(f, out);
+    return SNOW_STATUS_OK;
 }
 
 /* --- the view ------------------------------------------------------------- */
@@ -232,14 +246,15 @@ static snow_status find_object(fit *f, snow_comm *comm,
     return status;
 }
 
-/* The second walk finds the target, the last one how far what is shown is from
+/* The first bounds give the target, the last ones how far what is shown is from
  * it. */
 static snow_status fit_view(fit *f, snow_comm *comm, const snow_volume *volume,
                             const double *azimuths, snow_view *view) {
     double bounds[BOUNDS], zoom = view->zoom, reach = 0;
     SNOW_TRY(place_cameras(f, azimuths, view));
     SNOW_TRY(find_object(f, comm, volume));
-    SNOW_TRY(find_bounds(f, comm, volume, bounds));
+    SNOW_TRY(find_hull(f, comm, volume));
+    SNOW_TRY(find_bounds(f, comm, bounds));
     view->zoom = 1;
     aim(f, bounds, view);
     SNOW_TRY(place_cameras(f, azimuths, view));
@@ -250,7 +265,7 @@ static snow_status fit_view(fit *f, snow_comm *comm, const snow_volume *volume,
         begin_bounds(bounds);
         add_place(f->view, f->cameras, at, f->margins[0], bounds + PLACES);
     } else
-        SNOW_TRY(find_bounds(f, comm, volume, bounds));
+        SNOW_TRY(find_bounds(f, comm, bounds));
     if (f->count == 1 && view->fov > 0) {
         /* Perspective moves the middle of the bounds, which is put right again.
          */
@@ -260,7 +275,7 @@ static snow_status fit_view(fit *f, snow_comm *comm, const snow_volume *volume,
                                 (in[2] - in[3]) / 2 * half * view->height, 0};
         move_target(f, step, view);
         SNOW_TRY(place_cameras(f, azimuths, view));
-        SNOW_TRY(find_bounds(f, comm, volume, bounds));
+        SNOW_TRY(find_bounds(f, comm, bounds));
     }
     for (int i = PLACES; i < BOUNDS; i++)
         reach = fmax(reach, bounds[i]);
@@ -300,6 +315,7 @@ snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
                           size_t count, snow_view *view) {
     fit f = {.context = volume->context,
              .transfer = transfer,
+             .hull = {.context = volume->context},
              .object = {.context = volume->context}};
     snow_transfer *own = NULL;
     snow_view fitted;
@@ -315,15 +331,14 @@ snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
         status = SNOW_RESERVE(f.context, f.cameras, 0, f.count);
     if (status == SNOW_STATUS_OK)
         status = SNOW_RESERVE(f.context, f.margins, 0, f.count);
-    if (status == SNOW_STATUS_OK)
-        status = SNOW_RESERVE(f.context, f.bounds, 0, f.settings.threads);
     if (comm)
         status = snow_comm_agree_status(comm, status);
     if (status == SNOW_STATUS_OK)
         status = fit_watched(&f, comm, volume, azimuths, &fitted);
     snow_release(f.context, f.cameras);
     snow_release(f.context, f.margins);
-    snow_release(f.context, f.bounds);
+    snow_release(f.context, f.rows);
+    snow_hull_free(&f.hull);
     snow_fit_object_free(&f.object);
     snow_transfer_free(own);
     return status == SNOW_STATUS_OK
