@@ -112,6 +112,8 @@ int cmd_convert(const options *opts) {
     if (opts->range.kind != SNOW_RANGE_AUTO && !opts->as && !opts->type)
         return fail_usage("--range: needs a type to spread the values over; "
                           "add --as uint8, for example");
+    if (opts->as == AS_RGB24)
+        return fail_usage("--as: rgb24 is of frames; give a voxel type");
     int done = open_context(opts, &context);
     if (done == CONTINUE)
         done = convert(context, opts);

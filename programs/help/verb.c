@@ -72,10 +72,12 @@ static const struct {
     {VERB_TURNTABLE,
      {"snowglass turntable head.nii.gz -o head.mp4",
       "snowglass turntable ct.nrrd -o bone.gif --preset ct-bone --frames 60",
-      "snowglass turntable cells.tif -o f_%04d.png --elevation 20 --resume"}},
+      "snowglass turntable cells.tif -o - --as rgb24 |\n"
+      "    ffmpeg -f rawvideo -pix_fmt rgb24 -s 512x512 -r 25 -i - cells.mkv"}},
     {VERB_MOVIE,
      {"snowglass movie run_%04d.nrrd -o run.mp4",
-      "snowglass movie a.vti b.vti c.vti -o abc.webm -c viridis --range 0,1",
+      "snowglass movie run_%04d.nrrd -o - --as rgb24 |\n"
+      "    ffmpeg -f rawvideo -pix_fmt rgb24 -s 512x512 -r 25 -i - run.mkv",
       "snowglass movie heart.nii.gz -o heart.gif --fps 10 --annotate step"}},
     {VERB_SERVE,
      {"snowglass serve head.nii.gz",

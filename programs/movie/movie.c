@@ -30,7 +30,16 @@
 int movie_check(const options *opts) {
     if (!opts->output)
         return fail_usage("no output given; add -o OUT.mp4 or -o f_%%04d.png");
-    bool is_movie = movie_format_of(opts->output) != NULL;
+    const bool streams = strcmp(opts->output, "-") == 0;
+    if (streams != (opts->as == AS_RGB24) || (streams && opts->resume))
+        return fail_usage(
+            "%s: frames on standard output need -o - --as rgb24, files "
+            "neither; --resume needs files",
+            opts->output);
+    if (streams && isatty(STDOUT_FILENO))
+        return fail_usage("--output: standard output is a terminal; send it to "
+                          "a pipe or a file");
+    bool is_movie = streams || movie_format_of(opts->output);
     if (is_movie && opts->bits)
         return fail_usage("%s: --bits works only for PNG; remove it",
                           opts->output);
@@ -53,7 +62,7 @@ int movie_check(const options *opts) {
 }
 
 static bool needs_encoder(const movie *s) {
-    return s->place.format && s->place.format->arguments;
+    return s->place.streams || (s->place.format && s->place.format->arguments);
 }
 
 /* --- the beginning -------------------------------------------------------- */
@@ -84,8 +93,8 @@ int movie_open(const options *opts, shot_list *list, movie **out) {
         movie_close(s);
         return done;
     }
-    /* A movie by ffmpeg has no transparency: without a background it is black.
-     * Its frames are kept as the encoder gets them. */
+    /* A movie by ffmpeg, or for it, has no transparency: without a background
+     * it is black. Its frames are kept as the encoder gets them. */
     snow_image_options_init(&s->form);
     paint_background(opts, NULL, &s->form);
     s->form.flatten |= needs_encoder(s);
@@ -179,11 +188,15 @@ static int claim_output(movie *s) {
                                      strerror(number), place_remedy(number));
 }
 
-/* Prepares the frames' folder, the record, ffmpeg and the queue; removes
- * leftovers. */
-static int begin_parts(movie *s) {
-    const frame_sink sink = {s, movie_frame_prepare, movie_frame_commit,
-                             movie_frame_release};
+static int open_stream(movie *s) {
+    s->encoder.pipe = dup(STDOUT_FILENO);
+    s->encoding = s->encoder.pipe >= 0;
+    return s->encoding ? CONTINUE
+                       : fail_output("standard output: %s", strerror(errno));
+}
+
+/* Prepares the frames' folder and the record; removes leftovers. */
+static int begin_files(movie *s) {
     s->made_folder = s->place.format && !is_there(s->place.folder);
     int done = place_make_folder(&s->place);
     if (done == CONTINUE)
@@ -192,9 +205,19 @@ static int begin_parts(movie *s) {
         return done;
     place_sweep(&s->place);
     s->begun = !s->record.anew;
-    if (needs_encoder(s) && encoder_is_there())
+    return CONTINUE;
+}
+
+/* The same, then ffmpeg and the queue. */
+static int begin_parts(movie *s) {
+    const frame_sink sink = {s, movie_frame_prepare, movie_frame_commit,
+                             movie_frame_release};
+    int done = s->place.streams ? open_stream(s) : begin_files(s);
+    if (done != CONTINUE)
+        return done;
+    if (!s->encoding && needs_encoder(s) && encoder_is_there())
         done = start_encoder(s);
-    else if (needs_encoder(s) && s->opts->verbosity >= 0)
+    else if (!s->encoding && needs_encoder(s) && s->opts->verbosity >= 0)
         say("note: %s: ffmpeg was not found on the PATH; only frames are made, "
             "in %s",
             s->place.output, s->place.folder);
@@ -395,7 +418,7 @@ static int finish_movie(movie *s, int done) {
     snow_status status = s->queue ? frames_drain(s->queue) : SNOW_STATUS_OK;
     if (status != SNOW_STATUS_OK && status != SNOW_STATUS_STOPPED)
         done = report_queue(s, status);
-    if (done == CONTINUE && s->encoding)
+    if (done == CONTINUE && s->encoding && !s->place.streams)
         done = finish_encoder(s);
     else if (done == CONTINUE && s->place.format && !needs_encoder(s))
         done = join_movie(s);

@@ -61,8 +61,9 @@ static snow_status make_frame(const movie *s, frame_slot *slot) {
         s->list->slices ? NULL : slot->image, slot->context, &overlay);
     form.overlay = overlay;
     form.depth = slot->depth;
-    place_aside(&s->place, slot->index, path, sizeof path);
-    if (status == SNOW_STATUS_OK)
+    if (!s->place.streams)
+        place_aside(&s->place, slot->index, path, sizeof path);
+    if (status == SNOW_STATUS_OK && !s->place.streams)
         status = snow_image_save(slot->image, path, &form);
     if (status == SNOW_STATUS_OK && s->encoding)
         status = fill_bytes(s, slot, &form);
@@ -105,13 +106,17 @@ static snow_status name_frame(movie *s, frame_slot *slot) {
 snow_status movie_frame_commit(void *user, frame_slot *slot) {
     movie *s = user;
     snow_status status = SNOW_STATUS_OK;
-    if (!s->record.kept[slot->index])
+    if (!s->record.kept[slot->index] && !s->place.streams)
         status = name_frame(s, slot);
     if (status != SNOW_STATUS_OK || !s->encoding)
         return status;
     size_t size = (size_t)s->opts->size[0] * (size_t)s->opts->size[1] * 3;
     int number = encoder_write(&s->encoder, slot->work, size);
-    return number == 0 ? SNOW_STATUS_OK : fault(slot, "ffmpeg", number);
+    if (number == 0 || !s->place.streams)
+        return number ? fault(slot, "ffmpeg", number) : SNOW_STATUS_OK;
+    snprintf(slot->fault, sizeof slot->fault,
+             "standard output: %s; see why its reader ended", strerror(number));
+    return SNOW_STATUS_BAD_OUTPUT;
 }
 
 void movie_frame_release(void *user, frame_slot *slot) {

@@ -23,7 +23,7 @@ struct movie {
     snow_context *context;
     frame_queue *queue;
     movie_encoder encoder;
-    bool encoding; /* ffmpeg runs and takes the frames */
+    bool encoding; /* ffmpeg, or standard output, takes the frames */
     bool claimed;  /* the record belongs to this run */
     bool begun;    /* and has been written */
     bool made_folder;

@@ -80,7 +80,11 @@ int place_read(const char *output, movie_place *out) {
     int done = check_no_folder(output);
     if (done != CONTINUE)
         return done;
-    *out = (movie_place){.output = output, .format = movie_format_of(output)};
+    *out = (movie_place){.output = output,
+                         .format = movie_format_of(output),
+                         .streams = strcmp(output, "-") == 0};
+    if (out->streams)
+        return CONTINUE;
     return out->format ? read_movie(out) : read_pattern(out);
 }
 
@@ -144,6 +148,8 @@ static int check_movie(snow_context *context, const movie_place *place,
 
 int place_check(snow_context *context, const movie_place *place,
                 const options *opts) {
+    if (place->streams)
+        return CONTINUE;
     return place->format ? check_movie(context, place, opts)
                          : check_pattern(context, place, opts);
 }

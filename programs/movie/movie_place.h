@@ -10,6 +10,7 @@
 typedef struct movie_place {
     const char *output;         /* as given */
     const movie_format *format; /* NULL: the frames are the result */
+    bool streams;               /* they go to standard output, as raw bytes */
     frame_names names;          /* names of the frames */
     /* For a movie: the folder of its frames, and in it the unfinished movie and
      * the messages of ffmpeg. */

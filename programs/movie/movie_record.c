@@ -366,8 +366,9 @@ static int describe(const options *opts, const shot_list *list,
 int record_open(const options *opts, shot_list *list, const movie_place *place,
                 frame_record *out) {
     *out = (frame_record){.file = -1, .anew = true};
-    int done = open_file(place, out);
-    if (done != CONTINUE)
+    int done =
+        place->streams ? describe(opts, list, out) : open_file(place, out);
+    if (done != CONTINUE || place->streams)
         return done;
     char *old = out->file >= 0 ? read_text_of(out->file) : NULL;
     if (!old && out->file >= 0)

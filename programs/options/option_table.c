@@ -38,7 +38,8 @@ const option_row option_table[] = {
      read_text,
      FIELD(output), 0, 0, "output file. Picture: .png, .jpg or .webp; .npy, .exr, .tif or .pfm for "
      "float pixels; - writes PNG to stdout. Movie: .mp4, .webm, .gif or .webp, or a "
-     "pattern such as f_%04d.png for single frames. Volume: .nrrd, .nii, "
+     "pattern such as f_%04d.png for single frames; - with --as rgb24 writes raw "
+     "frames. Volume: .nrrd, .nii, "
      ".nii.gz, .mha, .npy, .raw or .raw.gz. A picture without -o is NAME.png in "
      "the working folder, after the input, and replaces no file"},
     {"size", 's', "WxH|N", TOPIC_OUTPUT, FILED, read_size, FIELD(size), 0, 0, "picture size in pixels; N is NxN (default 512x512; of a slice its own, a "
@@ -189,9 +190,9 @@ const option_row option_table[] = {
      0, "voxels of raw data or of a phantom, x fastest"},
     {"type", 0, "TYPE", TOPIC_DATA, INPUT, read_type, FIELD(type), 0, 0, "voxel type of raw data: int8 to int64, uint8 to uint64, float32 or "
      "float64"},
-    {"as", 0, "TYPE", TOPIC_DATA, CONVERT, read_type, FIELD(as), 0, 0, "voxel type to convert to, by rounding; with --range, that range is "
+    {"as", 0, "TYPE", TOPIC_DATA, CONVERT | MOVIES, read_type, FIELD(as), 0, 0, "voxel type to convert to, by rounding; with --range, that range is "
      "spread over the whole type (default: the input's, or the smallest that "
-     "holds the values)"},
+     "holds the values). Of frames on standard output (-o -): rgb24, raw bytes"},
     {"spacing", 0, "XxYxZ", TOPIC_DATA, INPUT, read_spacing, FIELD(spacing), 0,
      0, "voxel size, in place of the file's (default for raw data 1x1x1)"},
     {"endian", 0, "little|big", TOPIC_DATA, INPUT, read_choice, FIELD(endian),

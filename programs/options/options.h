@@ -55,6 +55,9 @@ typedef enum topic {
 /* Must exceed the number of rows in option_table: more would be lost. */
 #define OPTION_ROWS_MOST 128
 
+/* --as of frames on standard output; no voxels have it. */
+#define AS_RGB24 ((snow_type)64)
+
 /* Size of the texts of a configuration. */
 #define CONFIG_TEXTS_BYTES 32768
 
@@ -97,8 +100,8 @@ typedef struct options {
     const char *fit; /* what the picture frames */
     place_value position, target, up;
 
-    int64_t dims[3]; /* 0: not given */
-    snow_type type, as;
+    int64_t dims[3];    /* 0: not given */
+    snow_type type, as; /* of frames: AS_RGB24 */
     double spacing[3];  /* 0: not given */
     const char *endian; /* NULL: not given */
     uint64_t offset;

@@ -154,11 +154,13 @@ bool read_spacing(const option_row *row, const char *text, void *field,
     return true;
 }
 
-/* The names come from the library's list of types. */
+/* The names come from the library's list of types; frames have one of their
+ * own. */
 bool read_type(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
-    (void)row;
     snow_type type = snow_type_from_name(text);
+    if (strcmp(row->name, "as") == 0 && strcmp(text, "rgb24") == 0)
+        type = AS_RGB24;
     if (type == SNOW_TYPE_NONE) {
 #define TYPE_NAME(name, type, text) " " text
         static const char names[] = SNOW_TYPE_MAP(TYPE_NAME);

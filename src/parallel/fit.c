@@ -142,8 +142,10 @@ static snow_status visit_slab(const snow_volume *slab, void *user) {
     const int64_t rows = f->part.count[1] * f->part.count[2];
     if (ends)
         SNOW_TRY(SNOW_RESERVE(f->context, f->rows, 0, rows));
-    for (int64_t n = 0; ends && n < rows; n++)
-        f->rows[n][0] = 1, f->rows[n][1] = 0;
+    for (int64_t n = 0; ends && n < rows; n++) {
+        f->rows[n][0] = 1;
+        f->rows[n][1] = 0;
+    }
     SNOW_TRY(snow_visit_interesting(&walk, f->visit, user));
     return ends ? snow_hull_add(&f->hull, &f->part, f->rows) : SNOW_STATUS_OK;
 }

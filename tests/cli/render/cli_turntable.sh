@@ -41,6 +41,18 @@ END
 chmod +x bin/ffmpeg
 fake() { env PATH="$WORK/bin:$PATH" FAKE="$1" "${@:2}"; }
 
+# Raw frames go to a pipe as ffmpeg gets them.
+run 0 "bytes for ffmpeg" fake good "$TOOL" turntable $small -q --frames 3 -o raw.mp4
+"$TOOL" turntable $small -q --frames 3 -o - --as rgb24 | cat >raw.bytes
+check "are those on standard output" cmp raw.mp4 raw.bytes
+check "three times 60x44 pixels" [ "$(wc -c <raw.bytes)" -eq $((3 * 60 * 44 * 3)) ]
+"$TOOL" turntable $small -q --frames 200 -o - --as rgb24 2>.err | head -c 9 >/dev/null
+check "a reader that ends is told of" grep -q "standard output: Broken pipe" .err
+for words in "-o -" "-o - --as uint8" "-o f_%d.png --as rgb24" "-o - --as rgb24 --resume"; do
+    run 2 "refused: $words" turn $words
+    check "says what works" grep -q -e "-o - --as rgb24" "$ERR"
+done
+
 # Every frame is the picture of its azimuth.
 for kind in png npy pfm; do
     run 0 "a turn of .$kind" turn --frames 5 --azimuth 10 -o "f_%03d.$kind"
@@ -81,7 +93,7 @@ refusals 2 "$TOOL" turntable phantom:cube <<'END'
 -o f_%04d.bmp|f_0000.bmp
 -o f_%04d.mp4|a movie is one file
 -o x.avi|cannot hold many frames
--o -|cannot hold many frames
+-o -|need -o - --as rgb24
 -q|no output given
 --frames 0 -o x%d.png|whole number
 -o x%d.npy --background red|work only for PNG
