@@ -7,11 +7,9 @@
 
 /* The place of a mask's n-th set bit, as a byte of a number; 0x80: none. */
 #define BIT(m, b) ((m) >> (b)&1)
-#define BELOW(m, b)                                                    \
-    (BIT((m) & ((1 << (b)) - 1), 0) + BIT((m) & ((1 << (b)) - 1), 1) + \
-     BIT((m) & ((1 << (b)) - 1), 2) + BIT((m) & ((1 << (b)) - 1), 3) + \
-     BIT((m) & ((1 << (b)) - 1), 4) + BIT((m) & ((1 << (b)) - 1), 5) + \
-     BIT((m) & ((1 << (b)) - 1), 6))
+/* How many bits are set below b. As an expression of the preprocessor's it
+ * would be so long that compilers take seconds for it. */
+#define BELOW(m, b) __builtin_popcount((m) & ((1 << (b)) - 1))
 #define IS_NTH(m, n, b) (BIT(m, b) && BELOW(m, b) == (n))
 #define NTH(m, n)           \
     (IS_NTH(m, n, 0)   ? 0  \
