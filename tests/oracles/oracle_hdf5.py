@@ -443,6 +443,36 @@ with h5py.File("i.ims", "w") as file:
 oracle.expect("i.ims", a, oracle.affine((0.25, 1.25, 2.25),
                                         (10.625, 11.125, 11.625)), unit="um")
 
+# Channels and times of microscopes are data sets of their own: of light, with names and
+# colours; BigDataViewer stores 16 bits without a sign as if they had one.
+a = oracle.sample("u2", (2, 3, 4, 6, 5))  # t, c, z, y, x
+with h5py.File("c.ims", "w") as file, h5py.File("bdv.h5", "w") as viewer:
+    for t, c in np.ndindex(2, 3):
+        for level in range(2):
+            group = file.create_group(f"DataSet/ResolutionLevel {level}/TimePoint {t}/"
+                                      f"Channel {c}")
+            group["Data"] = a[t, c, ::level + 1, ::level + 1]
+            viewer[f"t{t:05d}/s{c:02d}/{level}/cells"] = \
+                a[t, c, ::level + 1, ::level + 1].astype("i2")
+    for c, (name, color) in enumerate((("DAPI", "0.000 0.000 1.000"),
+                                       ("GFP", "0.000 1.000 0.000"),
+                                       ("far red", "1.000 0.500 0.000"))):
+        group = file.create_group(f"DataSetInfo/Channel {c}")
+        group.attrs["Name"], group.attrs["Color"] = letters(name), letters(color)
+for name in ("c.ims", "bdv.h5"):
+    oracle.expect(name, a[0, 0])
+    oracle.expect(name, a[1, 2], options=("--time", 1, "--channel", 2))
+    oracle.refuse(name, "channel 3 does not exist", ("--channel", 3), 2)
+    oracle.checked += 1
+    said = oracle.tool("render", name, "-o", "light.png", "-y", "-s", "40").stderr
+    if "mode mip" not in said or "channels 0" not in said:
+        oracle.fail(f"{name} is not of light", said)
+oracle.says("setups", "bdv.h5", "s00 to s02 are taken for channels")
+oracle.checked += 1
+said = [(c["name"], c["color"]) for c in oracle.told("c.ims")["channels"]]
+if said != [("DAPI", [0, 0, 1]), ("GFP", [0, 1, 0]), ("far red", [1, 0.5, 0])]:
+    oracle.fail("c.ims", said)
+
 # Refused: other files' voxels, filters that are not there, cut files.
 with h5py.File("h.h5", "w") as file:
     layout = h5py.VirtualLayout((20, 30, 40), "<f4")

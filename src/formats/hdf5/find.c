@@ -55,7 +55,7 @@ bool snow_hdf5_describe(hid_t id, hdf5_set *out) {
     bool right = out->type && axes >= 1 && axes <= HDF5_MOST_AXES &&
                  H5Sget_simple_extent_dims(space, out->sizes, NULL) == axes;
     out->axes = axes;
-    out->constant = false;
+    out->constant = out->no_sign = false;
     out->id = id;
     snow_hdf5_drop(type);
     snow_hdf5_drop(space);
@@ -76,6 +76,7 @@ static bool describe_constant(hid_t id, hdf5_set *out) {
     out->axes = axes;
     out->type = SNOW_TYPE_FLOAT64;
     out->constant = true;
+    out->no_sign = false;
     out->id = id;
     return true;
 }

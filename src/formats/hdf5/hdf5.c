@@ -100,9 +100,10 @@ static snow_status read_region(const hdf5_file *file, const hdf5_set *set,
         first[at] = (hsize_t)region->first[i];
         count[at] = (hsize_t)region->count[i];
     }
-    return snow_hdf5_read_box(volume->context, file, set->id,
-                              native_type(set->type), set->axes, first, count,
-                              volume->owned);
+    return snow_hdf5_read_box(
+        volume->context, file, set->id,
+        native_type(set->no_sign ? SNOW_TYPE_INT16 : set->type), set->axes,
+        first, count, volume->owned);
 }
 
 /* Impossible sizes are refused before memory is allocated. */
@@ -326,17 +327,56 @@ static snow_status read_found(snow_context *context, const hdf5_file *file,
     return read_set(context, file, set, options, info, out);
 }
 
+/* The data set of that name, or all that is read with it. */
+static snow_status read_named(snow_context *context, const hdf5_file *file,
+                              const hdf5_series *series,
+                              const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    hdf5_set set;
+    bool found;
+    SNOW_TRY(snow_hdf5_read_theta(context, file, options->dataset, options,
+                                  info, out, &found));
+    if (found)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_hdf5_find(context, file, options->dataset, &set));
+    set.spatial |= series->stack;
+    set.no_sign = series->no_sign;
+    if (set.no_sign)
+        set.type = SNOW_TYPE_UINT16;
+    snow_status status = read_found(context, file, &set, options, info, out);
+    snow_hdf5_drop(set.id);
+    return status;
+}
+
+/* What all data sets of a series or stack are together. */
+static void describe_all(const hdf5_series *series,
+                         const snow_volume_info *said, snow_volume_info *info) {
+    info->times = series->count;
+    info->time = series->step;
+    if (series->stack) {
+        info->channels = said->channels;
+        info->light = said->light;
+        memcpy(info->channel, said->channel, sizeof info->channel);
+    }
+    if (isnan(info->time_value) && (!series->stack || series->count > 1)) {
+        info->time_value = (double)series->number;
+        memcpy(info->time_unit, "step", 5);
+    }
+}
+
 /* A pattern of names is a series, whose steps are files' own. */
 static snow_status read_step(snow_context *context, const hdf5_file *file,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
     const hid_t id = snow_hdf5_id(file);
     snow_volume_options own = *options;
+    snow_volume_info said;
     hdf5_series series;
-    hdf5_set set;
     char active[HDF5_NAME_BYTES];
     SNOW_TRY(snow_hdf5_find_step(context, id, options, &series));
-    if (!own.dataset && snow_hdf5_active_image(file, active)) {
+    if (!series.given)
+        SNOW_TRY(snow_hdf5_find_stack(context, file, options, &said, &series));
+    if (!series.given && !own.dataset && snow_hdf5_active_image(file, active)) {
         own.dataset = active;
         snow_notify(context,
                     "%s is taken, which the file says is active; "
@@ -347,22 +387,13 @@ static snow_status read_step(snow_context *context, const hdf5_file *file,
         own.dataset = series.path;
         own.time = 0;
     }
-    bool found;
-    snow_status status = snow_hdf5_read_theta(context, file, own.dataset, &own,
-                                              info, out, &found);
-    if (!found && status == SNOW_STATUS_OK) {
-        SNOW_TRY(snow_hdf5_find(context, file, own.dataset, &set));
-        status = read_found(context, file, &set, &own, info, out);
-        snow_hdf5_drop(set.id);
+    if (series.stack) {
+        own.channel = 0;
+        own.component = NULL;
     }
-    if (status != SNOW_STATUS_OK || !series.given)
-        return status;
-    info->times = series.count;
-    info->time = series.step;
-    if (isnan(info->time_value)) {
-        info->time_value = (double)series.number;
-        memcpy(info->time_unit, "step", 5);
-    }
+    SNOW_TRY(read_named(context, file, &series, &own, info, out));
+    if (series.given)
+        describe_all(&series, &said, info);
     return SNOW_STATUS_OK;
 }
 

@@ -3,6 +3,7 @@
  *   driver.c  bytes of a source -> an open file of libhdf5
  *   find.c    names -> the data set to read
  *   series.c  patterns of names -> the data set of a step
+ *   stacks.c  microscopes' names -> the data set of a channel and a time
  *   text.c    texts of attributes
  *   grid.c    attributes -> geometry
  *   meaning.c attributes -> quantity, unit, time, conversion of values
@@ -51,6 +52,7 @@ typedef struct hdf5_set {
     snow_type type;
     bool constant; /* openPMD: a group with a value and a shape; id is its */
     double value;
+    bool no_sign; /* 16 bits that have none, whatever the type says */
     bool spatial; /* asked for behind "/./": no axis is of components */
 } hdf5_set;
 
@@ -72,6 +74,10 @@ bool snow_hdf5_is_usual(const hdf5_file *file);
  * missing or damaged.  Returns how many texts the attribute has. */
 size_t snow_hdf5_text(const hdf5_file *file, hid_t object, const char *name,
                       size_t index, char *out, size_t capacity);
+
+/* The text of an attribute of letters, or of one text. */
+void snow_hdf5_letters(const hdf5_file *file, hid_t object, const char *name,
+                       char out[64]);
 
 /* "what (libhdf5: why); the file is damaged ..." */
 snow_status snow_hdf5_fail(snow_context *context, const char *what);
@@ -122,6 +128,8 @@ typedef struct hdf5_series {
     int64_t count;  /* of steps */
     int64_t step;   /* the one that is taken, from 0 */
     int64_t number; /* in its name */
+    bool stack;     /* of channels of a microscope */
+    bool no_sign;   /* values have none, whatever their type says */
     char path[HDF5_NAME_BYTES];
 } hdf5_series;
 
@@ -130,6 +138,13 @@ typedef struct hdf5_series {
 snow_status snow_hdf5_find_step(snow_context *context, hid_t file,
                                 const snow_volume_options *options,
                                 hdf5_series *out);
+
+/* Files of Imaris and BigDataViewer, unless a data set is asked for: finds that
+ * of the channel and time of the options, and what is said of the channels.
+ * Errors: SNOW_STATUS_BAD_USAGE (no such channel or time). */
+snow_status snow_hdf5_find_stack(snow_context *context, const hdf5_file *file,
+                                 const snow_volume_options *options,
+                                 snow_volume_info *said, hdf5_series *out);
 
 /* Reads elements first .. first + count - 1 along each of `axes` axes of a data
  * set, at most HDF5_MOST_AXES, as values of a type of libhdf5 in memory, the

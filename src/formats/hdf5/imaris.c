@@ -14,12 +14,11 @@
 #include <math.h>
 #include <string.h>
 
-/* The text of an attribute of letters, or of one text. */
-static void read_letters(const hdf5_file *file, hid_t object, const char *name,
-                         char out[32]) {
-    const size_t count = snow_hdf5_text(file, object, name, 0, out, 32);
+void snow_hdf5_letters(const hdf5_file *file, hid_t object, const char *name,
+                       char out[64]) {
+    const size_t count = snow_hdf5_text(file, object, name, 0, out, 64);
     char letter[2];
-    for (size_t n = 1; n < count && n < 31; n++) {
+    for (size_t n = 1; n < count && n < 63; n++) {
         snow_hdf5_text(file, object, name, n, letter, sizeof letter);
         out[n] = *letter;
         out[n + 1] = 0;
@@ -28,11 +27,11 @@ static void read_letters(const hdf5_file *file, hid_t object, const char *name,
 
 static double read_number(const hdf5_file *file, hid_t object, const char *name,
                           int axis, const char *axes) {
-    char whole[16] = "", text[32];
+    char whole[16] = "", text[64];
     double value = NAN;
     memcpy(whole, name, strlen(name));
     whole[strlen(name)] = axes[axis];
-    read_letters(file, object, whole, text);
+    snow_hdf5_letters(file, object, whole, text);
     return snow_parse_double(text, &value) ? value : NAN;
 }
 
@@ -60,7 +59,7 @@ bool snow_hdf5_place_imaris(const hdf5_file *file, const hdf5_set *set,
     const hid_t image = channel < 0 ? -1
                                     : H5Oopen(snow_hdf5_id(file),
                                               "DataSetInfo/Image", H5P_DEFAULT);
-    char unit[32] = "";
+    char unit[64] = "";
     double step[3], low[3];
     bool given = image >= 0;
     for (int i = 0; i < 3 && given; i++) {
@@ -74,7 +73,7 @@ bool snow_hdf5_place_imaris(const hdf5_file *file, const hdf5_set *set,
         info->matrix[i][3] = low[i] + step[i] / 2;
     }
     if (given)
-        read_letters(file, image, "Unit", unit);
+        snow_hdf5_letters(file, image, "Unit", unit);
     memcpy(info->unit, unit, strnlen(unit, sizeof info->unit - 1));
     snow_hdf5_drop(image);
     snow_hdf5_drop(channel);
