@@ -315,7 +315,7 @@ void render_state_choices(const render_state *s, char *out, size_t size) {
              over && s->settings.shade == SNOW_SHADE_NONE ? "; not shaded" : "",
              view, over ? "" : "mode ",
              over ? "" : snow_mode_name(s->settings.mode),
-             s->opts->slab ? " for a thin slab (-m over shows its cut)," : "",
+             s->opts->slab ? " for a slab (-m over shows its cut)," : "",
              over                        ? ""
              : s->settings.threshold > 0 ? " of all voxels (no threshold), "
                                          : " of all voxels, ",

@@ -76,16 +76,10 @@ int snow_mode_from_name(const char *name) {
 }
 
 /* A few slices of a scan, whose surface is a cut: nothing but its projection
- * shows what is in it.  Whole numbers of a file that names no modality may be
- * labels, which are not projected. */
+ * shows what is in it. */
 static bool is_slab_of_scan(const snow_volume_info *info) {
     const int thin = snow_volume_thin_axis(info);
-    const bool scan =
-        strcmp(info->modality, "MR") == 0 || strcmp(info->modality, "CT") == 0;
-    const bool fractions =
-        !*info->modality && !info->whole && info->type >= SNOW_TYPE_FLOAT32;
-    return info->medical && (scan || fractions) && !info->estimate &&
-           info->channels <= 1 && thin >= 0 && info->dims[thin] > 1;
+    return snow_volume_is_scan(info) && thin >= 0 && info->dims[thin] > 1;
 }
 
 snow_mode snow_mode_for(const snow_volume_info *given) {

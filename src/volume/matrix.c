@@ -47,6 +47,29 @@ bool snow_matrix_invert3(const double m[4][4], double inverse[3][3]) {
     return true;
 }
 
+bool snow_volume_is_scan(const snow_volume_info *info) {
+    const bool scan =
+        strcmp(info->modality, "MR") == 0 || strcmp(info->modality, "CT") == 0;
+    const bool fractions =
+        !*info->modality && !info->whole && info->type >= SNOW_TYPE_FLOAT32;
+    return info->medical && (scan || fractions) && !info->estimate &&
+           info->channels <= 1;
+}
+
+/* Slices that are fewer, and at least so many pixels apart: their cuts are
+ * sharp, and what lies between them is a guess. */
+#define FEW_SLICES 32
+#define APART 3
+
+static bool has_few_slices(const snow_volume_info *info, int axis) {
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    const int64_t *n = info->dims;
+    const double pixel = fmax(info->spacing[a], info->spacing[b]);
+    return n[axis] > 1 && n[axis] < FEW_SLICES && n[axis] < n[a] &&
+           n[axis] < n[b] && info->spacing[axis] >= APART * pixel &&
+           snow_volume_is_scan(info);
+}
+
 int snow_volume_thin_axis(const snow_volume_info *info) {
     double side[3];
     for (int axis = 0; axis < 3; axis++)
@@ -55,7 +78,8 @@ int snow_volume_thin_axis(const snow_volume_info *info) {
                          : 0; /* a slice has no thickness to be seen */
     for (int axis = 0; axis < 3; axis++)
         if (side[axis] <
-            0.25 * fmin(side[(axis + 1) % 3], side[(axis + 2) % 3]))
+                0.25 * fmin(side[(axis + 1) % 3], side[(axis + 2) % 3]) ||
+            has_few_slices(info, axis))
             return axis;
     return -1;
 }

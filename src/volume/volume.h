@@ -70,8 +70,13 @@ snow_volume_info snow_volume_info_of_box(const snow_volume_info *whole,
                                          const int64_t first[3],
                                          const int64_t count[3]);
 
+/* Whether a volume is MR or CT of a patient.  Whole numbers of a file that
+ * names no modality may be labels. */
+bool snow_volume_is_scan(const snow_volume_info *info);
+
 /* The axis along which a volume is thinner than a quarter of the next wider
- * side, and so is seen from its face; -1: none. */
+ * side, or a scan has few thick slices, and so is seen from its face; -1: none.
+ */
 int snow_volume_thin_axis(const snow_volume_info *info);
 
 /* An info with one voxel's defaults: identity matrix, slope 1, one time step,

@@ -992,14 +992,15 @@ for name, dtype in (("ct_abdomen_20of275", "u2"), ("mr_fse_brain_19", "f4")):
         (folder,) = glob.glob(f"{name}/*/")
         voxels, matrix = volume([opened(p) for p in glob.glob(f"{folder}/*")])
         oracle.expect(folder, voxels, matrix, dtype=dtype, unit="mm")
-# PET opens as a projection on white, from 0 on; thin slabs of scans as one from
-# their face.
+# PET opens as a projection on white, from 0 on; thin slabs of scans, and few thick
+# slices, as one from their face.
 dose = np.random.default_rng(2).integers(0, 900, (6, 9, 8)).astype("u2")
 top = np.percentile(dose, 99.9, method="inverted_cdf")
-FACE = "view inferior; mode mip for a thin slab "
+FACE = "view inferior; mode mip for a slab "
 for modality, step, words in (("PT", 2, f"grey_r 0..{top}"), ("NM", 2, ""),
                               ("MR", 0.1, FACE), ("CT", 0.1, FACE),
-                              ("NM", 0.1, ""), ("MR", 2, "")):
+                              ("NM", 0.1, ""), ("MR", 2, ""),  # below 3 pixels
+                              ("MR", 2.3, FACE), ("CT", 2.3, FACE), ("NM", 2.3, "")):
     oracle.checked += 1
     folder = f"looks_{modality}_{step}"
     series(folder, dose, [(0, 0, step * n) for n in range(6)], Modality=modality)
