@@ -360,7 +360,7 @@ static PyObject *dict_of_info(const snow_volume_info *i) {
     const double(*m)[4] = i->matrix;
     return Py_BuildValue(
         "{s(LLL)sss(ddd)s((dddd)(dddd)(dddd)(dddd))sdsdsOsO&sssLsLsO&sO&sO"
-        "sO&sO&sO&sdsO&sO&sLsNsNssszsO}",
+        "sO&sO&sO&sdsO&sO&sLsNsNssszsOsO}",
         "dims", (long long)i->dims[0], (long long)i->dims[1],
         (long long)i->dims[2], "type", snow_type_name(i->type), "spacing",
         i->spacing[0], i->spacing[1], i->spacing[2], "matrix", m[0][0], m[0][1],
@@ -378,7 +378,8 @@ static PyObject *dict_of_info(const snow_volume_info *i) {
         list_of_channels(i), "axes", axes_of_info(i), "first_mode",
         snow_mode_name(snow_mode_for(i)), "first_colormap",
         snow_colormap_for(i), "lengths",
-        i->magnitude && i->components == 3 ? Py_True : Py_False);
+        i->magnitude && i->components == 3 ? Py_True : Py_False, "directions",
+        i->directions ? Py_True : Py_False);
 }
 
 static PyObject *volume_info(PyObject *self, void *closure) {

@@ -69,6 +69,7 @@ typedef struct snow_volume_info {
     uint64_t light; /* bit n: channel n of several is of emitted light */
     double axis_scale[3];    /* world's length of a unit; below 0: down; 0: 1 */
     char axis_unit[3][16];   /* of the world's x, y, z; "": `unit`; "1": none */
+    bool directions; /* says the file: three floats are a vector of space */
 } snow_volume_info;
 SNOW_RECORD(snow_volume_info);
 typedef enum snow_endian {   /* byte order of raw data */

@@ -219,7 +219,7 @@ bool channels_are_light(const channel_list *list,
     for (int n = 0; n < list->count; n++) {
         const int64_t at = list->picks[n].index;
         const bool own = at < SNOW_CHANNELS_MAX && info->channel[at].own;
-        all = all && !own &&
+        all = all && !own && !info->directions &&
               (!info->light || (at < 64 && (info->light >> at & 1)));
         colored |= *list->picks[n].color != 0;
     }
@@ -241,4 +241,15 @@ void channels_of_file(const snow_volume_info *info, channel_list *out) {
     if (list.count == 1 && list.picks[0].index == 0)
         list.count = 0;
     *out = list;
+}
+
+void channels_of_directions(channel_list *out) {
+    static const char *const names[] = {"|x|", "|y|", "|z|"};
+    static const char *const colors[] = {"red", "green", "blue"};
+    *out = (channel_list){.count = 3};
+    for (int n = 0; n < 3; n++) {
+        out->picks[n] = (channel_pick){.index = n, .opacity = 1};
+        strcpy(out->picks[n].name, names[n]);
+        strcpy(out->picks[n].color, colors[n]);
+    }
 }

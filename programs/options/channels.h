@@ -13,6 +13,7 @@ typedef struct channel_pick {
     double opacity;    /* a factor on opacities */
     bool light;        /* emitted, of which noise is left out */
     double white;      /* the ground of the colours it is a part of; or 0 */
+    bool absolute;     /* a direction: its absolute values */
 } channel_pick;
 
 typedef struct channel_list {
@@ -39,6 +40,9 @@ bool channels_are_light(const channel_list *list, const snow_volume_info *info);
 
 /* All that the file shows; none where that is its first channel as it is. */
 void channels_of_file(const snow_volume_info *info, channel_list *out);
+
+/* Directions of vectors, as of diffusion: red is |x|, green |y|, blue |z|. */
+void channels_of_directions(channel_list *out);
 
 /* Names those without a colour: the file's, else this map unless it is NULL,
  * else a usual one.  Of light blue is paler: it is too dark to be seen. */

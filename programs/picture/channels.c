@@ -50,6 +50,13 @@ static void note_others(const options *opts, const snow_volume_info *info) {
                 (long long)n, (long long)n);
 }
 
+static void note_directions(const options *opts) {
+    if (opts->verbosity >= 0 && process_talks())
+        say("note: directions of vectors are in colours, red |x|, green |y|, "
+            "blue |z|, as bright as vectors are long; --colormap viridis shows "
+            "lengths alone");
+}
+
 /* --- a white ground ---------------------------------------------------------
  *
  * Colours of voxels that lie on one, as sections in a bright field do, are
@@ -134,8 +141,12 @@ int channels_choose(const options *opts, const snow_volume_info *info,
     const bool one = opts->preset || opts->tf || opts->colormap ||
                      opts->component || opts->labels ||
                      options_given(opts, "channel");
+    const bool directed = info->directions && strcmp(opts->mode, "slice") == 0;
     if (!asked->count && !one)
-        channels_of_file(info, &list);
+        directed ? channels_of_directions(&list)
+                 : channels_of_file(info, &list);
+    for (int n = 0; n < list.count; n++)
+        list.picks[n].absolute = directed;
     if (!why && list.count > 1 &&
         !memory_holds(opts, info, list.count, scratch, sizeof scratch))
         why = scratch;
@@ -167,7 +178,7 @@ int channels_choose(const options *opts, const snow_volume_info *info,
             (long long)info->channels, SNOW_CHANNELS_MAX,
             (long long)info->channels - 1);
     if (!asked->count && list.count)
-        note_others(opts, info);
+        directed ? note_directions(opts) : note_others(opts, info);
     const bool light =
         strcmp(opts->mode, "mip") == 0 && channels_are_light(&list, info);
     for (int n = 0; n < list.count; n++)
@@ -320,9 +331,12 @@ snow_status channels_look(snow_comm *comm, const options *opts,
 
 snow_volume_options channels_data(const options *opts,
                                   const channel_pick *pick) {
+    static const char *const directions[] = {"|x|", "|y|", "|z|"};
     snow_volume_options data = data_options(opts);
-    data.channel = pick->index;
     data.channel_given = true;
+    if (pick->absolute && pick->index < 3)
+        data.component = directions[pick->index];
+    data.channel = data.component ? 0 : pick->index;
     return data;
 }
 

@@ -89,16 +89,26 @@ int slice_inspect(slice_work *w) {
     return done;
 }
 
+/* Those of the first channel. */
+static snow_volume_options data_of(const slice_work *w) {
+    return w->channels.list.count
+               ? channels_data(&w->opts, &w->channels.list.picks[0])
+               : data_options(&w->opts);
+}
+
+static int open_alone(slice_work *w, const snow_volume_options *data) {
+    return check_status(
+        w->context, snow_volume_open(w->context, w->path, data, &w->volume));
+}
+
 /* In memory, or where that has no room, in the file. */
 static int open_several(slice_work *w) {
-    const snow_volume_options data = data_options(&w->opts);
+    const snow_volume_options data = data_of(w);
     memory_plan plan;
     int done = memory_plan_for(&w->opts, w->path, &data, w->channels.list.count,
                                false, &plan);
     if (done != CONTINUE || !plan.streams)
-        return done == CONTINUE
-                   ? open_input(w->context, &w->opts, w->path, &w->volume)
-                   : done;
+        return done == CONTINUE ? open_alone(w, &data) : done;
     w->in_file = true;
     if (w->opts.verbosity >= 0 && w->kind == SLICE_GRID && !w->opts.at)
         say("note: %s stays in its file, since it is larger than the memory: "
@@ -116,11 +126,8 @@ static int read_volume(slice_work *w) {
     if (w->kind == SLICE_ONE)
         crop_to_slice(w);
     w->opts.mixes = true;
-    if (w->channels.list.count)
-        w->opts.channel = w->channels.list.picks[0].index;
-    return w->kind == SLICE_ONE
-               ? open_input(w->context, &w->opts, w->path, &w->volume)
-               : open_several(w);
+    const snow_volume_options data = data_of(w);
+    return w->kind == SLICE_ONE ? open_alone(w, &data) : open_several(w);
 }
 
 int slice_read_alone(const slice_work *w, int64_t part, slice_work *out) {
@@ -153,6 +160,39 @@ void slice_close_alone(slice_work *w) {
     snow_volume_close(w->volume);
 }
 
+/* All directions are as bright where vectors are as long: up to the end of the
+ * automatic range of lengths. */
+static snow_status fit_lengths(slice_work *w) {
+    channel_list *list = &w->channels.list;
+    snow_volume_options data = data_options(&w->opts);
+    const snow_look look = {.size = sizeof look,
+                            .preset = "linear",
+                            .range = automatic_range(&w->opts)};
+    snow_volume *lengths = NULL;
+    snow_transfer *seen = NULL;
+    range_value range = {SNOW_RANGE_VALUES, 0, 0};
+    if (options_range(&w->opts).kind != SNOW_RANGE_AUTO)
+        return SNOW_STATUS_OK;
+    data.channel = 0;
+    data.component = "magnitude";
+    snow_status status =
+        w->in_file
+            ? snow_volume_open_streamed(w->context, w->path, &data, 0, &lengths)
+            : snow_volume_open(w->context, w->path, &data, &lengths);
+    if (status == SNOW_STATUS_OK)
+        status = snow_transfer_new_for_volume(lengths, &look, &seen);
+    if (status == SNOW_STATUS_OK)
+        snow_transfer_domain(seen, &range.low, &range.high);
+    range.low = 0;
+    range.high = range.high > 0 ? range.high : 1;
+    for (int n = 0; n < list->count; n++)
+        if (list->picks[n].range.kind == SNOW_RANGE_AUTO)
+            list->picks[n].range = range;
+    snow_transfer_free(seen);
+    snow_volume_close(lengths);
+    return status;
+}
+
 /* Labels are drawn as such where nothing else is asked, as in a picture. */
 int slice_open_colors(slice_work *w) {
     static options automatic; /* large */
@@ -164,9 +204,13 @@ int slice_open_colors(slice_work *w) {
                  options_range(opts).kind != SNOW_RANGE_AUTO;
     int done = CONTINUE;
     if (w->channels.list.count) {
-        snow_status status =
-            channels_look(NULL, opts, &w->whole, &w->channels.list.picks[0],
-                          w->volume, &w->transfer);
+        snow_status status = w->channels.list.picks[0].absolute
+                                 ? fit_lengths(w)
+                                 : SNOW_STATUS_OK;
+        if (status == SNOW_STATUS_OK)
+            status =
+                channels_look(NULL, opts, &w->whole, &w->channels.list.picks[0],
+                              w->volume, &w->transfer);
         channels_close_volumes(&w->channels);
         if (status == SNOW_STATUS_OK)
             status = channels_open(opts, w->context, w->path, false, 0,

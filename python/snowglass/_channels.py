@@ -32,6 +32,11 @@ ON_WHITE = ((0.0, 0.6), (0.04, 0.6), (0.15, 0.6), (1.0, 0.6))
 NONE_SAID: Mapping[str, Any] = {"name": "", "color": None, "window": None,
                                 "shown": False, "own": False, "light": False}
 
+#: Of vectors, as of diffusion: red is |x|, green |y|, blue |z|.
+DIRECTIONS: Sequence[Mapping[str, Any]] = [
+    {**NONE_SAID, "name": f"|{name}|", "color": color} for name, color in (
+        ("x", (1, 0, 0)), ("y", (0, 1, 0)), ("z", (0, 0, 1)))]
+
 Said = Sequence[Mapping[str, Any]]  #: info["channels"]
 
 
@@ -251,10 +256,10 @@ class Channels:
     def __init__(self, picks: Sequence[Pick], numbers: Sequence[int],
                  said: Said, *, count: int, first: int, listed: bool,
                  open: Callable[[Any, int], _snowglass.Volume],
-                 why: Optional[str] = None) -> None:
+                 why: Optional[str] = None, directions: bool = False) -> None:
         self.picks, self.numbers, self.said = picks, numbers, said
         self.count, self.first, self.listed = count, first, listed
-        self.why, self._open = why, open
+        self.why, self._open, self.directions = why, open, directions
         self._opened: dict[int, _snowglass.Volume] = {}
         self._white: Optional[float] = None  #: of a ground, once it is known
 
@@ -288,7 +293,7 @@ class Channels:
         """Those of a Volume that is made of another, as by a mask."""
         made = Channels(self.picks, self.numbers, self.said, count=self.count,
                         first=self.first, listed=self.listed, open=self._open,
-                        why=self.why)
+                        why=self.why, directions=self.directions)
         made._opened = {n: change(volume) for n, volume in
                         enumerate(self.volumes(base)) if volume is not base}
         return made
@@ -321,6 +326,8 @@ class Channels:
                 ) -> Optional[Mixture]:
         """With their looks, each changed, as to a slice of it; None, with a
         warning: the Volume is drawn alone."""
+        if self.directions and mode != "slice":
+            return None
         why = self._hindrance(look, mode, settings)
         colored = look.preset is not None or look.colors is not None
         if self.listed and colored:
@@ -330,17 +337,29 @@ class Channels:
             raise ValueError(f"channel: {why}; give one channel, such as "
                              f"channel={self.numbers[0]}")
         if why or (not self.listed and (colored or look.colormap)):
-            self.warn(why)
+            if not self.directions:
+                self.warn(why)
             return None
         drawn = [change(volume) for volume in self.volumes(base)]
         colors = [self._color(n, look, mode) for n in range(len(drawn))]
         white = self._ground(drawn, look, mode)
+        if self.directions:
+            look = self._as_bright(change(base), look)
         return Mixture(
             drawn, [self._transfer(volume, n, color, look, mode, white) for
                     n, (volume, color) in enumerate(zip(drawn, colors))],
             [self._said(n)["name"] or f"channel {self.numbers[n]}"
              for n in range(len(drawn))], colors, self.numbers,
             [pick.opacity for pick in self.picks], white)
+
+    @staticmethod
+    def _as_bright(lengths: Any, look: Look) -> Look:
+        """With one range for all, up to the end of that of the lengths."""
+        if is_ranged(look):
+            return look
+        high = lengths._look({"preset": "linear"}, "slices", None, None,
+                             None).domain[1]
+        return dataclasses.replace(look, range=(0, high if high > 0 else 1))
 
     def _ground(self, drawn: Sequence[Any], look: Look, mode: str) -> float:
         """Where white begins that colours of voxels lie on; 0: they do not."""
@@ -447,8 +466,10 @@ def of_volume(volume: Any, path: Any, fields: Mapping[str, Any], clip: Any,
             fields.get("channel") is not None or
             fields.get("component") is not None):
         return None
+    directions = not listed and info["directions"] and \
+        fields.get("labels") is None and not is_read_once(path)
     if not listed and fields.get("labels") is None:
-        numbers = of_file(info)
+        numbers = (0, 1, 2) if directions else of_file(info)
         picks = [Pick(number) for number in numbers]
     if not picks:
         if info["channel_count"] > 1:
@@ -456,9 +477,13 @@ def of_volume(volume: Any, path: Any, fields: Mapping[str, Any], clip: Any,
         return None
 
     def open(base: Any, number: int) -> _snowglass.Volume:
+        own = {"component": f"|{number}|"} if directions else {"channel": number}
         return _snowglass.open(_snowglass.Volume, os.fsencode(path),
-                               {**fields, "channel": number}, clip, 0, None, base)
+                               {**fields, **own}, clip, 0, None, base)
 
+    if directions:
+        return Channels(picks, (0, 1, 2), DIRECTIONS, count=3, first=-1,
+                        listed=False, open=open, directions=True)
     return Channels(
         picks, numbers, info["channels"], count=info["channel_count"],
         first=fields.get("channel") or 0, listed=listed, open=open,

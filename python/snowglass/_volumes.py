@@ -198,7 +198,7 @@ class Volume(_snowglass.Volume):
         and channels (the first eight): name, color, window (or None), whether it
         is shown, and whether it is a part of the voxels' own colours."""
         info = dict(self._info)
-        if self._mixed is not None:
+        if self._mixed is not None and not self._mixed.directions:
             info["channel_count"] = self._mixed.count
             info["channels"] = [dict(each) for each in self._mixed.said]
         columns = _arrays.columns_of(self._order, self._axes)
@@ -630,14 +630,15 @@ class Volume(_snowglass.Volume):
         _check_legend(legend)
         along, index, position = self._find_slice(axis, at)
         alone = self._slice_alone(along, index)
-        if self._info["lengths"] and not isinstance(look, _snowglass.Transfer):
+        mixed = self._mixed
+        if self._info["lengths"] and not (mixed and mixed.directions) and \
+                not isinstance(look, _snowglass.Transfer):
             given = look_of(look)  # of lengths, which the slice alone is not
             if not (given.preset or given.colormap or given.colors):
                 look = dataclasses.replace(given, colormap="viridis")
         if not isinstance(look, _snowglass.Transfer):
             look = _colormaps.resolved(alone, look, _chosen(look, "slice"))
         mixture = None
-        mixed = self._mixed
         if mixed is not None and not isinstance(look, _snowglass.Transfer):
             mixture = mixed.mixture(
                 self, look_of(look), "slice", {}, lambda each: alone if each is
@@ -773,7 +774,8 @@ class Volume(_snowglass.Volume):
                     settings: Mapping[str, Any], lines: _overlays.Lines,
                     progress: Progress) -> Image:
         width, height = _sides(0 if size is None else size)
-        image, places = self._slices(
+        first: _snowglass.Volume = mixture.volumes[0] if mixture else self
+        image, places = first._slices(
             Image, transfer, axis, columns, rows, (at[0], at[1], at[2]), indices,
             width, height, settings,
             (mixture.layers() if mixture else ()) + lines.layers,

@@ -118,7 +118,8 @@ snow_status snow_volume_pick_channel(snow_context *context,
                                      int64_t channels, snow_volume_info *info,
                                      int64_t *out);
 
-/* The same for values that lie next to each other and may be a vector.  Sets
+/* The same for values that lie next to each other and may be a vector, of space
+ * if info->directions says so, which is kept of three floats.  Sets
  * info->components, and info->magnitude if the options ask for the magnitude of
  * all, or for nothing, and they are 2 or 3 floats; then *out is the first one,
  * and the others are asked for one by one (components.h).  info->type

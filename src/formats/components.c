@@ -16,8 +16,22 @@
 /* Voxels that are converted at once. */
 #define RUN ((int64_t)1024)
 
+/* "|x|", the absolute values of a component, in copies of options that name the
+ * component alone. */
+static bool is_absolute(const char *text, char name[24]) {
+    const size_t length = text ? strlen(text) : 0;
+    if (length < 3 || length > 24 || *text != '|' || text[length - 1] != '|')
+        return false;
+    memcpy(name, text + 1, length - 2);
+    name[length - 2] = 0;
+    return true;
+}
+
 /* The number of a component, -1 for the magnitude and for other texts. */
 static int64_t number_of(const char *text) {
+    char inner[24];
+    if (is_absolute(text, inner))
+        text = inner;
     static const char letters[] = "xyzw";
     const char *at = *text && !text[1] ? strchr(letters, *text) : NULL;
     int64_t number;
@@ -153,6 +167,9 @@ snow_status snow_volume_pick_component(snow_context *context,
                                        const snow_volume_options *options,
                                        int64_t count, snow_volume_info *info,
                                        int64_t *out) {
+    const bool floats =
+        info->type == SNOW_TYPE_FLOAT32 || info->type == SNOW_TYPE_FLOAT64;
+    info->directions = info->directions && floats && count == 3;
     /* Three or four bytes are a colour, as napari and ParaView take them. */
     if (info->type == SNOW_TYPE_UINT8 && (count == 3 || count == 4) &&
         !options->component)
@@ -165,10 +182,7 @@ snow_status snow_volume_pick_component(snow_context *context,
         !options->component && !options->channel && !options->channel_given;
     /* Vectors are shown by their length, as ParaView does. Four components may
      * be anything, and whole numbers are most often colours. */
-    const bool vector =
-        (count == 2 || count == 3) &&
-        (info->type == SNOW_TYPE_FLOAT32 || info->type == SNOW_TYPE_FLOAT64);
-    info->magnitude = named || (usual && vector);
+    info->magnitude = named || (usual && floats && (count == 2 || count == 3));
     if (!info->magnitude)
         return snow_volume_pick_channel(context, options, count, info, out);
     *out = 0;
@@ -418,7 +432,16 @@ static snow_status read_vector(snow_context *context, snow_component_fn *read,
                                void *user, bool once,
                                const snow_volume_options *options,
                                snow_volume_info *info, snow_volume **volume) {
-    SNOW_TRY(read(user, options, info, volume));
+    snow_volume_options own = *options;
+    char name[24];
+    const bool absolute = is_absolute(options->component, name);
+    if (absolute)
+        own.component = name;
+    SNOW_TRY(read(user, &own, info, volume));
+    if (absolute && volume)
+        SNOW_TRY(begin_lengths(context, volume));
+    if (absolute)
+        describe(info);
     if (info->magnitude && once)
         SNOW_TRY(keep_first(context, options, info));
     if (!info->magnitude)

@@ -160,6 +160,38 @@ for name in ("rgb.npy", "rgb.vti"):
     got = draw("slice", name, "--axis", "z", "--at", "4")
     expect_light(got[::-1], RGB[4] / 255, f"bytes in threes, {name}", LEVEL)
 
+# Directions of vectors: red |x|, green |y|, blue |z|, over the longest of the slice.
+ARROWS = random.normal(0, 1, SHAPE[1:] + (3,)).astype(np.float32)
+ARROWS /= np.maximum(1, np.linalg.norm(ARROWS, axis=-1))[..., None]
+flat = ARROWS.tobytes()
+oracle.put("arrows.nrrd", oracle.nrrd("float", (3, 11, 14, 9),
+                                      "kinds: vector domain domain domain\n", flat))
+parts = oracle.nifti(ARROWS.transpose(2, 1, 0, 3)[..., 0].copy(), np.eye(4), 16)[:352]
+for name, intent, dims in (("v1.nii", 1007, (4, 11, 14, 9, 3, 1)),
+                           ("warp.nii", 1006, (5, 11, 14, 9, 1, 3)),
+                           ("fnirt.nii", 2006, (4, 11, 14, 9, 3, 1))):
+    oracle.put(name, parts + ARROWS.transpose(3, 0, 1, 2).tobytes())
+    oracle.patch(name, 40, np.array(dims, "<i2").tobytes())
+    oracle.patch(name, 68, np.array(intent, "<i2").tobytes())
+    oracle.patch(name, 254, bytes(2))  # of no patient
+oracle.put("arrows.vtk", (
+    "# vtk DataFile Version 3.0\nv\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 11 14 "
+    "9\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 1386\nVECTORS v float\n").encode() +
+    ARROWS.astype(">f4").tobytes())
+oracle.put("arrows.vti", (vtk.replace("UInt8", "Float32").replace(
+    "<PointData>", "<PointData Vectors='v'>") % " ".join(
+        map(repr, ARROWS.ravel().tolist()))).encode())
+longest = np.linalg.norm(ARROWS[4], axis=-1).max()
+for name in ("arrows.nrrd", "v1.nii", "warp.nii", "fnirt.nii", "arrows.vtk",
+             "arrows.vti"):
+    got = draw("slice", name, "--axis", "z", "--at", "4")[::-1]
+    expect_light(got, np.minimum(np.abs(ARROWS[4]) / longest, 1),
+                 f"directions, {name}", LEVEL)
+    got = draw("slice", name, "--axis", "z", "--at", "4", "-c", "grey")[::-1]
+    length = np.linalg.norm(ARROWS[4], axis=-1)
+    expect_light(got, (length - length.min()) / (longest - length.min()),
+                 f"lengths, {name}", LEVEL)
+
 # On a white ground what is bright is clear, and what is dark is not: 20 voxels of
 # opacity 0.6 over 1 / (1 - least / white) voxels (docs/looks.md).  A dark ground and a
 # red one stay as they are.

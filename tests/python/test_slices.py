@@ -181,6 +181,25 @@ class Slices(InFolder):
         self.same(volume.slice_grid(2, 2, "z"), "slice", "v.npy", "--axis", "z", "--grid",
                   "2x2")
 
+    def test_directions_of_vectors_are_in_colours(self):
+        arrows = numpy.random.default_rng(4).normal(0, 1, (5, 6, 7, 3)).astype("<f4")
+        with open("arrows.nrrd", "wb") as file:
+            file.write(b"NRRD0004\ntype: float\ndimension: 4\nsizes: 3 7 6 5\nkinds: "
+                       b"vector domain domain domain\nendian: little\nencoding: raw\n"
+                       b"\n" + arrows.tobytes())
+        with self.assertWarnsRegex(sg.SnowglassWarning, "magnitude of the 3"):
+            volume = sg.Volume("arrows.nrrd")
+        length = numpy.linalg.norm(arrows, axis=-1)
+        numpy.testing.assert_allclose(volume, length, rtol=1e-6)
+        pixels = numpy.asarray(volume.slice("z", 2))[::-1, :, :3]
+        numpy.testing.assert_allclose(pixels, numpy.abs(arrows[2]) / length[2].max(),
+                                      atol=1e-5)
+        self.same(volume.slice("z", 2), "slice", "arrows.nrrd", "--axis", "z", "--at",
+                  "2")
+        self.same(volume.slice_grid(2, 2), "slice", "arrows.nrrd", "--grid", "2x2")
+        self.same(volume.slice("z", 2, look="grey"), "slice", "arrows.nrrd", "--axis",
+                  "z", "--at", "2", "-c", "grey")
+
     def test_masks_hold_for_the_default_of_a_slice(self):
         mask = (self.array > 300).astype(numpy.uint8)
         sg.Volume(mask, spacing=(1.5, 1.5, 1.5)).save("m.nrrd")

@@ -94,6 +94,7 @@ size_t nifti_header_size(const unsigned char *bytes, size_t size) {
 #define INTENT_VECTOR 1007
 #define INTENT_RGB 2003
 #define INTENT_RGBA 2004
+#define INTENT_FNIRT 2006 /* displacements, of FSL */
 #define INTENT_CIFTI 3000 /* the first of CIFTI's, */
 #define INTENT_LAST 3099  /* and the last */
 
@@ -134,7 +135,8 @@ static void read_fields(const unsigned char *bytes, nifti_header *header) {
     header->estimate =
         intent == INTENT_ESTIMATE ||
         (intent >= INTENT_CORRELATION && intent <= INTENT_LOG10PVAL);
-    header->vectors = intent == INTENT_DISPLACEMENT || intent == INTENT_VECTOR;
+    header->vectors = intent == INTENT_DISPLACEMENT ||
+                      intent == INTENT_VECTOR || intent == INTENT_FNIRT;
     header->colors = intent == INTENT_RGB || intent == INTENT_RGBA;
     header->surfaces = intent >= INTENT_CIFTI && intent <= INTENT_LAST;
     /* FSL keeps components where time is. */

@@ -185,6 +185,7 @@ static snow_status pick(const nifti_header *header, snow_context *context,
                         int64_t *channel) {
     const bool colors = sizes[0] > 2, is_complex = sizes[0] == 2;
     const bool vectors = is_complex || (header->vectors && !colors);
+    info->directions = vectors && !is_complex;
     if (!vectors)
         snow_channels_begin(info, colors ? sizes[0] : sizes[5], false);
     if (colors || (header->colors && (sizes[5] == 3 || sizes[5] == 4)))

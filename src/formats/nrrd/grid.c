@@ -240,9 +240,12 @@ snow_status snow_nrrd_lay_out(nrrd_header *header,
                                                              : "volume",
         options, info));
     const bool some = choice.values >= 0;
-    SNOW_TRY(snow_volume_pick_value(
-        header->context, options, some ? header->axes[choice.values].size : 1,
-        some && are_colors(header, choice.values), info, &value));
+    const bool colors = some && are_colors(header, choice.values);
+    info->directions =
+        some && !colors && header->axes[choice.values].role == NRRD_AXIS_VECTOR;
+    SNOW_TRY(snow_volume_pick_value(header->context, options,
+                                    some ? header->axes[choice.values].size : 1,
+                                    colors, info, &value));
     if (some ||
         (time >= 0 && choice.spaces && time < choice.space[choice.spaces - 1]))
         SNOW_TRY(lay_array(header, &choice, value, info, values));

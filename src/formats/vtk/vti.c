@@ -19,6 +19,7 @@ snow_status snow_vti_read_values(snow_source *source, vti_header *header,
            sizeof small->coordinates);
     SNOW_TRY(snow_vtk_describe(context, &header->grid, &header->array, options,
                                info));
+    info->directions = header->array.vectors;
     SNOW_TRY(snow_volume_pick_component(
         context, options, header->array.channels, info, &channel));
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));

@@ -33,7 +33,8 @@ typedef struct vti_text {
     bool ignored;           /* inside a later piece */
     bool points, cells;     /* inside PointData, CellData */
     bool any_points;        /* arrays of points were found */
-    char scalars[256];      /* the name of the section's scalars */
+    char scalars[256];      /* the name of the section's scalars, */
+    char vectors[256];      /* and vectors */
     int choice;             /* how good header->array is */
     char seen[512];         /* names of arrays so far, for messages */
 } vti_text;
@@ -160,14 +161,20 @@ static snow_status begin_piece(vti_text *text, const char **attributes) {
     return SNOW_STATUS_OK;
 }
 
+static void take_name(const char **attributes, const char *kind,
+                      char out[256]) {
+    const char *name = snow_index_attribute(attributes, kind);
+    *out = 0;
+    if (name && strlen(name) < 256)
+        memcpy(out, name, strlen(name) + 1);
+}
+
 static void begin_section(vti_text *text, const char **attributes,
                           bool points) {
-    const char *scalars = snow_index_attribute(attributes, "Scalars");
     text->points = points && !text->ignored;
     text->cells = !points && !text->ignored;
-    *text->scalars = 0;
-    if (scalars && strlen(scalars) < sizeof text->scalars)
-        memcpy(text->scalars, scalars, strlen(scalars) + 1);
+    take_name(attributes, "Scalars", text->scalars);
+    take_name(attributes, "Vectors", text->vectors);
 }
 
 static int judge(const vti_text *text, const char *name) {
@@ -232,6 +239,7 @@ static snow_status begin_array(vti_text *text, const char **attributes) {
                          text,
                          "its array has an unknown type, format, offset or "
                          "number of components; choose another with --dataset");
+    text->header->array.vectors = *name && !strcmp(name, text->vectors);
     /* Data in the element can be read only now, although better arrays may
      * follow. */
     const bool here = text->header->form != VTI_APPENDED;

@@ -222,6 +222,7 @@ static snow_status take_array(vtk_reader *reader, const char *name,
                          "correct the sizes",
                          array.name, (long long)tuples, (long long)voxels,
                          array.cells ? "cells" : "points");
+    info->directions = !reader->shares && starts(reader, "VECTORS", 3);
     SNOW_TRY(reader->shares
                  ? snow_volume_pick_channel(reader->context, reader->options,
                                             channels, info, &channel)
