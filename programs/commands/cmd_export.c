@@ -12,6 +12,7 @@
 #include "run/log.h"
 
 #include <limits.h>
+#include <math.h>
 #include <snowglass/overlay.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -204,6 +205,26 @@ static int append_packed(page_text *out, FILE *file, const char *path) {
     return done;
 }
 
+/* As it is drawn: a page knows no axes of other units. */
+static snow_status save_drawn(snow_context *context, const snow_volume *volume,
+                              const char *path) {
+    snow_volume_info info = *snow_volume_get_info(volume);
+    snow_volume *drawn = NULL;
+    bool plain = true;
+    for (int i = 0; i < 3; i++) {
+        plain = plain && !(fabs(info.axis_scale[i]) > 0);
+        info.axis_scale[i] = 0;
+    }
+    if (plain)
+        return snow_volume_save(volume, path, false);
+    snow_status status =
+        snow_volume_wrap(context, &info, snow_volume_voxels(volume), &drawn);
+    if (status == SNOW_STATUS_OK)
+        status = snow_volume_save(drawn, path, false);
+    snow_volume_close(drawn);
+    return status;
+}
+
 /* By way of a file, since volumes are written to files. */
 static int append_volume(snow_context *context, const options *opts,
                          const snow_volume *volume, page_text *out) {
@@ -217,7 +238,7 @@ static int append_volume(snow_context *context, const options *opts,
             "be written",
             place);
     snprintf(path, sizeof path, "%s/volume.nrrd", place);
-    snow_status status = snow_volume_save(volume, path, false);
+    snow_status status = save_drawn(context, volume, path);
     FILE *file = status == SNOW_STATUS_OK ? fopen(path, "rb") : NULL;
     unlink(path);
     rmdir(place);

@@ -54,6 +54,8 @@ snow_status snow_volume_save(const snow_volume *volume, const char *path,
                          info->intercept);
     snow_writer *writer;
     SNOW_TRY(snow_writer_open(volume->context, path, overwrite, &writer));
+    snow_volume plain = *volume; /* as it is, not as it is drawn */
+    snow_volume_unstretch(&plain.info);
     snow_monitor monitor;
     snow_monitor_begin(volume->context, &monitor, NULL, NULL);
     monitor.last = SNOW_STAGE_WRITE;
@@ -61,7 +63,7 @@ snow_status snow_volume_save(const snow_volume *volume, const char *path,
     if (endings[i].packed)
         status = snow_writer_pack(writer);
     if (status == SNOW_STATUS_OK)
-        status = endings[i].format->write(volume, path, writer);
+        status = endings[i].format->write(&plain, path, writer);
     status = snow_monitor_end(&monitor, status);
     if (status != SNOW_STATUS_OK) {
         snow_writer_abandon(writer);

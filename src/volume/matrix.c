@@ -91,3 +91,13 @@ void snow_volume_stretch(snow_volume_info *info, double times) {
     *scale = (fabs(*scale) > 0 ? *scale : 1) * times;
     snow_volume_info_measure(info);
 }
+
+void snow_volume_unstretch(snow_volume_info *info) {
+    for (int axis = 0; axis < 3; axis++) {
+        const double scale = info->axis_scale[axis];
+        for (int i = 0; i < 4 && fabs(scale) > 0; i++)
+            info->matrix[axis][i] /= scale;
+        info->axis_scale[axis] = 0;
+    }
+    snow_volume_info_measure(info);
+}

@@ -104,6 +104,9 @@ void snow_volume_info_measure(snow_volume_info *info);
 /* Stretches the world along its z. */
 void snow_volume_stretch(snow_volume_info *info, double times);
 
+/* Gives each axis its own coordinates, as they are in the file. */
+void snow_volume_unstretch(snow_volume_info *info);
+
 /* The number of voxels and of bytes of a volume of these dims and type.
  * False when a dim is below 1, the type unknown, or a product overflows 63
  * bits. */
