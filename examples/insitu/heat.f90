@@ -38,6 +38,7 @@ program heat
   ! ---------------------------------------------------------------------------
   status = snow_insitu_new_mpi_fortran(MPI_COMM_WORLD, movie)
   if (status /= 0) call MPI_Abort(MPI_COMM_WORLD, 1, error)
+  call snow_insitu_set_warning(movie, c_funloc(snow_print_warning), c_null_ptr)
   status = snow_insitu_set_grid(movie, int(n, c_int64_t), &
     [0d0, 0d0, 0d0], [1d0, 1d0, 1d0])
   status = snow_insitu_set_brick(movie, 0, int([0, 0, z0], c_int64_t), &

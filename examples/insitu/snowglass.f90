@@ -57,6 +57,23 @@ module snowglass
       integer(c_int), value :: id, type
     end function
 
+    ! Of a coarser level of refinement: how many voxels wide its cells are;
+    ! before its voxels.
+    integer(c_int) function snow_insitu_set_cells(movie, id, cells) bind(c)
+      import
+      type(c_ptr), value :: movie
+      integer(c_int), value :: id
+      integer(c_int64_t), intent(in) :: cells(3)
+    end function
+
+    ! What receives warnings, and in the end what pictures cost, on rank 0:
+    ! c_funloc(snow_print_warning), and c_null_ptr.
+    subroutine snow_insitu_set_warning(movie, warning, user) bind(c)
+      import
+      type(c_ptr), value :: movie, user
+      type(c_funptr), value :: warning
+    end subroutine
+
     ! All that holds for many steps, as JSON (docs/insitu.md, Recipes): a text, or
     ! a file.  Texts of C end with c_null_char.
     integer(c_int) function snow_recipe_apply_text(movie, text) bind(c)
@@ -109,10 +126,19 @@ contains
   function snow_insitu_message(movie) result(text)
     type(c_ptr), intent(in) :: movie
     character(len=:), allocatable :: text
+    text = text_at(snow_message_pointer(movie))
+  end function
+
+  subroutine snow_print_warning(user, text) bind(c)
+    type(c_ptr), value :: user, text
+    if (.not. c_associated(user)) print '(a)', text_at(text)
+  end subroutine
+
+  function text_at(at) result(text)
+    type(c_ptr), intent(in) :: at
+    character(len=:), allocatable :: text
     character(kind=c_char), pointer :: letters(:)
-    type(c_ptr) :: at
     integer :: i, n
-    at = snow_message_pointer(movie)
     n = int(snow_text_length(at))
     call c_f_pointer(at, letters, [n])
     allocate (character(len=n) :: text)

@@ -36,6 +36,7 @@ says 'v_0010.png'
 if [ -x "$EXAMPLES/heat" ]; then
     cp "$SOURCES/heat.json" .
     run 0 "heat on 3 ranks" launch 3 "$EXAMPLES/heat" heat.json heat.raw
+    prints 'pictures took'
     run 0 "the tool draws its field" "$TOOL" render heat.raw \
         --dims 48x40x56 --type float64 -o tool.png -y -q \
         -s 400x400 --background '#101018' -c magma --range 0,1 \
