@@ -17,104 +17,6 @@ static bool probe_netcdf(const unsigned char *bytes, size_t size) {
            (bytes[3] == 1 || bytes[3] == 2 || bytes[3] == 5);
 }
 
-/* Size of a variable's axis, counted from the end: 0 is x. */
-static int64_t size_of(const netcdf_header *header, const netcdf_variable *v,
-                       int64_t axis) {
-    return axis < v->axes ? header->dimensions[v->axis[v->axes - 1 - axis]].size
-                          : 1;
-}
-
-/* Returns whether a variable could be a volume, by its last axes, or by any. */
-static bool is_volume(const netcdf_header *header, const netcdf_variable *v,
-                      int axes, bool anywhere) {
-    int wide = 0;
-    if (!v->type || v->axes < axes || v->axes > NETCDF_MOST_AXES)
-        return false;
-    for (int i = 0; i < (anywhere ? v->axes : axes); i++)
-        wide += size_of(header, v, i) > 1;
-    return wide >= axes;
-}
-
-static void note(const netcdf_header *header, const netcdf_variable *v,
-                 char *list, size_t capacity) {
-    char sizes[128] = "";
-    for (int64_t i = 0, at = 0; i < v->axes && at < 100; i++)
-        at += snprintf(sizes + at, sizeof sizes - (size_t)at, "%s%lld",
-                       i ? "x" : "", (long long)size_of(header, v, i));
-    snow_list_add(list, capacity, "%s (%s)", v->name, sizes);
-}
-
-static void add_aside(void *user, const char *name, const cf_attribute *given) {
-    snow_cf_aside_add(name, given->text, user);
-}
-
-/* The only variable with three axes or, if there is none, with as many beside
- * axes of one entry, or with two; then of those that say where others lie. */
-static snow_status find_only(const netcdf_header *header, snow_seekable *bytes,
-                             char *list, size_t capacity,
-                             const netcdf_variable **out) {
-    static const struct {
-        int axes;
-        bool anywhere;
-    } ways[] = {{3, false}, {3, true}, {2, false}};
-    cf_aside aside = {""};
-    int found = 0;
-    for (int64_t i = 0; i < header->variable_count; i++)
-        snow_netcdf_attributes(header, bytes, &header->variables[i], add_aside,
-                               &aside);
-    for (int n = 0; n < 6 && !found; n++)
-        for (int64_t i = 0; i < header->variable_count; i++) {
-            const netcdf_variable *v = &header->variables[i];
-            if (!is_volume(header, v, ways[n % 3].axes, ways[n % 3].anywhere) ||
-                snow_cf_is_aside(&aside, v->name) != (n >= 3))
-                continue;
-            *out = v;
-            note(header, v, list, capacity);
-            found++;
-        }
-    if (found == 1)
-        return SNOW_STATUS_OK;
-    if (!found)
-        return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
-                         "has no numeric variable with three dimensions; "
-                         "choose another file");
-    return snow_fail(header->context, SNOW_STATUS_BAD_USAGE,
-                     "holds %d volumes; choose one with --dataset: %s", found,
-                     list);
-}
-
-static const netcdf_variable *variable_of(const netcdf_header *header,
-                                          const char *name) {
-    for (int64_t i = 0; i < header->variable_count; i++)
-        if (!strcmp(header->variables[i].name, name))
-            return &header->variables[i];
-    return NULL;
-}
-
-static snow_status find_variable(const netcdf_header *header,
-                                 snow_seekable *bytes, const char *asked,
-                                 const netcdf_variable **out) {
-    char list[800] = "";
-    snow_status status = find_only(header, bytes, list, sizeof list, out);
-    if (!asked)
-        return status;
-    if (*asked == '/') /* the same name as in NetCDF-4 */
-        asked++;
-    *out = variable_of(header, asked);
-    if (*out && (*out)->type && (*out)->axes >= 1 &&
-        (*out)->axes <= NETCDF_MOST_AXES)
-        return SNOW_STATUS_OK;
-    if (*out)
-        return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
-                         "%.100s is not a numeric array with one to five "
-                         "dimensions; choose another with --dataset",
-                         asked);
-    return snow_fail(header->context, SNOW_STATUS_BAD_USAGE,
-                     "--dataset %.200s: there is no such variable; the file "
-                     "has %s",
-                     asked, *list ? list : "none that is a volume");
-}
-
 /* Computes the strides of all axes, the fastest first, and all bytes from the
  * beginning of the file to the variable's end. */
 static bool lay_out(const netcdf_header *header, const netcdf_variable *v,
@@ -123,7 +25,7 @@ static bool lay_out(const netcdf_header *header, const netcdf_variable *v,
     uint64_t bytes;
     int axes = (int)v->axes, inner = axes - (v->records ? 1 : 0);
     for (int i = 0; i < axes; i++)
-        sizes[i] = size_of(header, v, i);
+        sizes[i] = snow_netcdf_size_of(header, v, i);
     if (!snow_array_steps(sizes, inner, snow_type_size(v->type), steps, &bytes))
         return false;
     for (int i = axes; i < NETCDF_MOST_AXES; i++)
@@ -209,7 +111,7 @@ static snow_status assign_axes(const netcdf_header *header,
                                snow_axes *out) {
     snow_axis_hint hints[NETCDF_MOST_AXES] = {{0}};
     for (int i = 0; i < NETCDF_MOST_AXES; i++) {
-        sizes[i] = size_of(header, v, i);
+        sizes[i] = snow_netcdf_size_of(header, v, i);
         if (i >= v->axes)
             continue;
         int64_t dimension = v->axis[v->axes - 1 - i];
@@ -351,7 +253,7 @@ static bool attribute_of_file(void *user, const char *name, cf_attribute *out) {
 
 static int64_t axes_of(void *user, const char *name) {
     const netcdf_job *job = user;
-    const netcdf_variable *v = variable_of(job->header, name);
+    const netcdf_variable *v = snow_netcdf_variable(job->header, name);
     return v && v->type && v->axes <= NETCDF_MOST_AXES ? v->axes : 0;
 }
 
@@ -359,12 +261,14 @@ static bool letters_of(void *user, const char *name, int64_t row,
                        char out[20]) {
     const netcdf_job *job = user;
     const netcdf_header *header = job->header;
-    const netcdf_variable *v = variable_of(header, name);
+    const netcdf_variable *v = snow_netcdf_variable(header, name);
     if (!v || v->type || v->kind != 2 || v->axes != 2 ||
-        size_of(header, v, 0) < 19 || row >= size_of(header, v, 1))
+        snow_netcdf_size_of(header, v, 0) < 19 ||
+        row >= snow_netcdf_size_of(header, v, 1))
         return false;
-    const uint64_t step =
-        v->records ? header->record_bytes : (uint64_t)size_of(header, v, 0);
+    const uint64_t step = v->records
+                              ? header->record_bytes
+                              : (uint64_t)snow_netcdf_size_of(header, v, 0);
     out[19] = 0;
     return snow_seekable_read(job->bytes, v->begin + (uint64_t)row * step, out,
                               19) == 19;
@@ -377,7 +281,7 @@ static snow_status read_other(void *user, const char *name,
     netcdf_job other = {.source = job->source,
                         .bytes = job->bytes,
                         .header = job->header,
-                        .variable = variable_of(job->header, name),
+                        .variable = snow_netcdf_variable(job->header, name),
                         .done = true};
     SNOW_TRY(lay_variable(&other, options, info));
     return snow_cf_read(job->header->context, NULL, &other.grid, &other.values,
@@ -413,7 +317,7 @@ static snow_status read_file(snow_source *source, snow_seekable *bytes,
         return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
                          "is a MINC file, whose values are scaled slice by "
                          "slice; convert it with mnc2nii");
-    SNOW_TRY(find_variable(header, bytes, options->dataset, &job.variable));
+    SNOW_TRY(snow_netcdf_find(header, bytes, options->dataset, &job.variable));
     job.file = (cf_file){.context = header->context,
                          .user = &job,
                          .attribute = attribute_of_file,

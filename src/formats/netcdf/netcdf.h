@@ -55,6 +55,19 @@ snow_status snow_netcdf_read_header(snow_context *context, snow_seekable *bytes,
                                     netcdf_header *out);
 void snow_netcdf_free_header(netcdf_header *header);
 
+/* Size of a variable's axis, counted from the end: 0 is x. */
+int64_t snow_netcdf_size_of(const netcdf_header *header,
+                            const netcdf_variable *v, int64_t axis);
+
+/* The variable of a name; NULL if there is none. */
+const netcdf_variable *snow_netcdf_variable(const netcdf_header *header,
+                                            const char *name);
+
+/* The variable that is asked for or, where that is NULL, the only volume.
+ * Errors: SNOW_STATUS_BAD_INPUT, SNOW_STATUS_BAD_USAGE. */
+snow_status snow_netcdf_find(const netcdf_header *header, snow_seekable *bytes,
+                             const char *asked, const netcdf_variable **out);
+
 /* Reads the values of a variable with one axis; returns false if they are
  * truncated. */
 bool snow_netcdf_values(const netcdf_header *header, snow_seekable *bytes,
