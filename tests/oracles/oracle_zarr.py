@@ -504,6 +504,15 @@ for chunks, whole in (((1, 4, 11, 20), True), ((4, 1, 6, 7), False)):
             oracle.fail("era.zarr", f"{chunks} {options}: other values")
         oracle.tells("era.zarr", options, time_value=6.0 * time, times=4,
                      axis_units=["degrees", "degrees", "millibars"])
+# What says where others lie does not hide the field.
+group = zarr.open_group("nemo.zarr", "w")
+for name, axes, says in (("tos", "yx", {"coordinates": "nav_lat nav_lon"}),
+                         ("nav_lon", "yx", {"bounds": "bounds_lon"}),
+                         ("bounds_lon", "yxn", {})):
+    group.create_dataset(name, data=oracle.sample("f4", [{"y": 7, "x": 8, "n": 4}[n]
+                                                         for n in axes])).attrs.update(
+        _ARRAY_DIMENSIONS=[*axes], **says)
+oracle.expect("nemo.zarr", oracle.sample("f4", (7, 8))[None])
 found, _ = oracle.voxels_of("era.zarr", ["--component", "u,v", "--time", 3])
 speed = np.hypot(*(np.where(part[3] == -32767, np.nan, part[3] * 0.001 + 5)
                    for part in (winds["u"].astype("f8"), winds["v"])))

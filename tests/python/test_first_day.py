@@ -158,6 +158,27 @@ class FirstPictures(InFolder):
             self.assertAlmostEqual(higher.affine[2, 2], 2 * 500 / 111195)
             numpy.testing.assert_allclose(higher.spacing, file.spacing)
 
+    @needs("netCDF4")
+    def test_levels_of_wrf_are_flat_or_columns(self):
+        import netCDF4
+        ground = numpy.array([[0.0, 90.0, 0.0]] * 2)
+        levels = 9.81 * (ground + numpy.arange(0, 700, 100.0)[:, None, None])
+        with netCDF4.Dataset("wrf.nc", "w") as file:
+            file.DX = file.DY = 500.0
+            for name, size in (("west_east", 3), ("south_north", 2),
+                               ("bottom_top", 6), ("bottom_top_stag", 7)):
+                file.createDimension(name, size)
+            for name, values, axis in (("PHB", levels, "bottom_top_stag"),
+                                       ("PH", 0 * levels, "bottom_top_stag"),
+                                       ("T", levels[1:], "bottom_top")):
+                file.createVariable(name, "f4", (axis, "south_north", "west_east"))[:] = values
+        flat = sg.Volume("wrf.nc", dataset="T")
+        columns = sg.Volume("wrf.nc", dataset="T", vertical="height")
+        self.assertFalse(numpy.isnan(numpy.asarray(flat)).any())
+        self.assertTrue(numpy.isnan(numpy.asarray(columns)).any())
+        with self.assertRaises(sg.Error):
+            sg.Volume("wrf.nc", dataset="T", vertical="depth")
+
     @needs("xarray", "netCDF4")
     def test_coordinates_count_as_those_of_files(self):
         import xarray

@@ -85,8 +85,10 @@ typedef struct heights {
 } heights;
 
 static void close_heights(heights *h) {
-    for (int i = 0; i < 3; i++)
-        snow_volume_close(h->part[i]);
+    if (h->part[2] != h->part[1])
+        snow_volume_close(h->part[2]);
+    snow_volume_close(h->part[1]);
+    snow_volume_close(h->part[0]);
 }
 
 /* Reads so many of them in the box x, y of the options. */
@@ -104,6 +106,10 @@ static snow_status open_heights(const cf_file *file, int parts,
     for (int i = 0; i < parts && status == SNOW_STATUS_OK; i++) {
         snow_volume_info info = snow_volume_info_default("netcdf");
         own.time = i < 2 ? own.time : 0;
+        if (i == 2 && !out->part[1]->info.time) {
+            out->part[2] = out->part[1];
+            break;
+        }
         status = file->read(file->user, names[i], &own, &info, &out->part[i]);
         if (status == SNOW_STATUS_OK && i &&
             memcmp(out->dims, out->part[i]->info.dims, sizeof out->dims) != 0)
