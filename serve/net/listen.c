@@ -15,8 +15,14 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/* Reasons of a close, for the page. */
-enum { CLOSE_BAD = 4400, CLOSE_SECRET = 4401, CLOSE_MANY = 4429 };
+/* Reasons of a close, for the page, which tries again after CLOSE_LATE: its
+ * machine was busy. */
+enum {
+    CLOSE_BAD = 4400,
+    CLOSE_SECRET = 4401,
+    CLOSE_LATE = 4408,
+    CLOSE_MANY = 4429
+};
 
 struct listener {
     struct lws_context *context;
@@ -313,7 +319,7 @@ static int serve_socket(struct lws *wsi, enum lws_callback_reasons reason,
         return 0;
     case LWS_CALLBACK_TIMER:
         return c->id ? 0
-                     : close_with(wsi, CLOSE_SECRET, "no hello came in time.");
+                     : close_with(wsi, CLOSE_LATE, "no hello came in time.");
     case LWS_CALLBACK_RECEIVE:
         return receive(l, c, in, length);
     case LWS_CALLBACK_SERVER_WRITEABLE:

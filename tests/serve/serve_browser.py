@@ -171,6 +171,8 @@ def everyday():
          "kinds: domain domain domain time", kind="int16")
     plan("steps", name)
     plans.append(("restarted", None, [TOOL], ()))
+    files = [head(f"asked{i}.nrrd", 48 - 8 * i, 40, 36)[0] for i in range(4)]
+    plans.append(("asked", None, [TOOL, *files], ()))
 
 
 HEAD = "phantom:head", "--dims", "64x64x64"  # a page waits for each picture of it

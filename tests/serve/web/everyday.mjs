@@ -2,7 +2,7 @@
 // starts these with what it drives a page by.
 import {spawn} from 'node:child_process';
 import {once} from 'node:events';
-import {readFileSync} from 'node:fs';
+import {readFileSync, renameSync, unlinkSync} from 'node:fs';
 import {createInterface} from 'node:readline';
 
 /** The keys of the recipe after an action, and only those that are wanted; undefined
@@ -250,9 +250,11 @@ async function planes({check, keys, rest, wheel}, page, its) {
     check('no change was refused', !/clip/.test(await page.locator('.said').textContent()));
 }
 
+const PHANTOM = ['phantom:head', '--dims', '64x64x64'];
+
 /** A viewer of its own: [process, URL]. */
 async function start(tool, ...options) {
-    const server = spawn(tool, ['serve', 'phantom:head', '--dims', '64x64x64', ...options],
+    const server = spawn(tool, ['serve', ...options],
         {stdio: ['ignore', 'pipe', 'ignore']});
     const [line] = await once(createInterface(server.stdout), 'line');
     return [server, line];
@@ -268,7 +270,7 @@ async function end(server) {
 export async function restarted({check, keys, open, part, rest, folder}) {
     const {url: tool, said} = part();
     const file = `${folder}/token_${process.pid}`;
-    let [server, url] = await start(tool, '--token-file', file);
+    let [server, url] = await start(tool, ...PHANTOM, '--token-file', file);
     const {port} = new URL(url), page = await open({}, url);
     const hears = words => page.waitForFunction(text => document.querySelector('.said').textContent
         .includes(text), words);
@@ -279,7 +281,7 @@ export async function restarted({check, keys, open, part, rest, folder}) {
     check('the page says that the viewer does not answer', true);
     await page.evaluate(() => window.snowglass.recipe.set({elevation: 7}));
     await page.evaluate(() => { window.snowglass.page.rest = null; });
-    [server] = await start(tool, '--token-file', file, '--listen', `:${port}`);
+    [server] = await start(tool, ...PHANTOM, '--token-file', file, '--listen', `:${port}`);
     await rest(page);
     check('a page comes back with the viewer',
         await page.locator('.said').textContent() === '');
@@ -295,13 +297,13 @@ export async function restarted({check, keys, open, part, rest, folder}) {
     await other.context().close();
     await end(server);
     await hears('start snowglass serve again');
-    [server] = await start(tool, '--token-file', file, '--listen', `:${port}`, '--azimuth', '5');
+    [server] = await start(tool, ...PHANTOM, '--token-file', file, '--listen', `:${port}`, '--azimuth', '5');
     await page.waitForFunction(() => window.snowglass.recipe.keys.azimuth === 42);
     await rest(page);
     check('all of it comes again', (await keys(page)).title === 'mine');
     await end(server);
     await hears('start snowglass serve again');
-    [server, url] = await start(tool, '--listen', `:${port}`);
+    [server, url] = await start(tool, ...PHANTOM, '--listen', `:${port}`);
     await hears('open the printed URL');
     check('the page says that the secret is another', true);
     await page.evaluate(() => { window.snowglass.old = true; });
@@ -319,6 +321,76 @@ export async function restarted({check, keys, open, part, rest, folder}) {
     await page.waitForFunction(() => window.snowglass && !window.snowglass.old);
     await rest(page);
     check('and so is a link', await page.evaluate(() => window.snowglass.recipe.keys.mode) === 'mip');
+    await page.context().close();
+    await end(server);
+    said.splice(0, said.length, ...said.filter(line => !/WebSocket connection to/.test(line)));
+}
+
+/** What is asked when a viewer has come back with another state or file, and when a file is
+ * another one while it is shown.  The words are four files, of which the later take the
+ * place of the first. */
+export async function asked({check, keys, open, part, rest, folder}) {
+    const {url: tool, said, words: [shown, next, third, last]} = part();
+    const token = ['--token-file', `${folder}/asked_${process.pid}`];
+    let [server, url] = await start(tool, shown, ...token);
+    const {port} = new URL(url), page = await open({}, url);
+    const dialog = page.locator('dialog[open]'), set = (where, changes) => where.evaluate(
+        all => window.snowglass.recipe.set(all), changes);
+    /** The viewer ends, and one of the file is there; the page tries again when it is told. */
+    const renew = async (...options) => {
+        await page.evaluate(() => { window.snowglass.engine.wait = 1e8; });
+        await end(server);
+        await page.waitForFunction(() => /start snowglass serve again/.test(
+            document.querySelector('.said').textContent));
+        [server] = await start(tool, shown, ...token, '--listen', `:${port}`, ...options);
+    };
+    const comeBack = () => page.evaluate(() => window.snowglass.engine.open());
+    await set(page, {azimuth: 42, title: 'mine'});
+    await rest(page);
+    await renew();
+    const other = await open({}, url);
+    await set(other, {azimuth: 11});
+    await rest(other);
+    await comeBack();
+    check('a state that another page has changed is not overwritten', /another page has changed it/.test(
+        await dialog.textContent()), await dialog.textContent());
+    const now = await keys(page);
+    check('and is what the page shows', now.azimuth === 11 && !now.title, JSON.stringify(now));
+    await dialog.getByRole('button', {name: 'Take the state of this page'}).click();
+    await other.waitForFunction(() => window.snowglass.recipe.keys.title === 'mine');
+    check('until it is said', (await keys(other)).azimuth === 42 && await dialog.count() === 0);
+    await other.context().close();
+    await rest(page);
+
+    renameSync(next, shown);
+    await renew('--elevation', '9');
+    await comeBack();
+    check('a viewer of another file asks', /this is another file/.test(await dialog.textContent()),
+        await dialog.textContent());
+    await page.keyboard.press('Escape');
+    await rest(page);
+    const kept = await keys(page);
+    check('and keeps its state', kept.elevation === 9 && !kept.title, JSON.stringify(kept));
+
+    renameSync(third, shown);
+    const dims = () => page.evaluate(() => window.snowglass.page.info.dims.join());
+    const before = await dims();
+    await set(page, {azimuth: 20});
+    check('a file that was replaced is told of', /another file now/.test(await dialog.textContent()),
+        await dialog.textContent());
+    await page.keyboard.press('Escape');
+    check('what is shown stays', await dims() === before);
+    renameSync(last, shown);
+    await set(page, {azimuth: 21});
+    await dialog.getByRole('button', {name: 'Open the new one'}).click();
+    await page.waitForFunction(was => window.snowglass.page.info.dims.join() !== was, before);
+    await rest(page);
+    check('and the new one is opened', await dims() === '24,40,36' &&
+        /24 x 40 x 36/.test(await page.locator('.top').textContent()), await dims());
+    unlinkSync(shown);
+    await set(page, {azimuth: 22});
+    await page.waitForFunction(() => /was removed/.test(document.querySelector('.said').textContent));
+    check('one that is gone is told of', await dialog.count() === 0);
     await page.context().close();
     await end(server);
     said.splice(0, said.length, ...said.filter(line => !/WebSocket connection to/.test(line)));

@@ -10,7 +10,7 @@ import {AsyncLocalStorage} from 'node:async_hooks';
 import {createServer, request} from 'node:http';
 import {connect} from 'node:net';
 import {readFileSync, writeFileSync} from 'node:fs';
-import {restarted, steps} from './everyday.mjs';
+import {asked, restarted, steps} from './everyday.mjs';
 
 const [playwright, chromium, folder, ...parts] = process.argv.slice(2);
 const {chromium: browsers} = await import(playwright);
@@ -1378,7 +1378,7 @@ async function more() {
 
 const tools = {answered, check, folder, keys, open, part, rest, slicesRest, wheel};
 const known = {short: first, long: all, more, film, steps: () => steps(tools),
-    restarted: () => restarted(tools), embed: embedded, points: manyPoints, mask: masked,
+    restarted: () => restarted(tools), asked: () => asked(tools), embed: embedded, points: manyPoints, mask: masked,
     overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, plain: plainChannels, begun, many};
 
 async function run() {
