@@ -214,7 +214,9 @@ same_file "is drawn as ever" big.npy big3.npy
 same_file "beside others, too" big2.npy big3.npy
 refused 5 "a list of more" 'channel: several need 1.9 MiB of memory, over the 1.5 MiB of --memory; give one' \
     "$TOOL" render big.tif -o z.png -s 40x40 --memory 1500K --channel 1,2
-for way in "-m over" "-m mip" "-m over --azimuth 40 --channel 0:red:0.3,2:green:p1..p99"; do
+ways=("-m over --azimuth 40 --channel 0:red:0.3,2:green:p1..p99" "-m over" "-m mip")
+[ -z "${SNOW_SANITIZED-}" ] || ways=("${ways[0]}") # each takes them ten seconds
+for way in "${ways[@]}"; do
     run 0 "several in memory $way" render large.tif -o whole.npy -j 2 $way
     told "in slabs" 'large.tif: stays in its file' \
         picture large.tif -o slabs.npy -v -j 2 --memory 7M $way
