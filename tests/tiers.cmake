@@ -58,10 +58,10 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
 # is left of their processor time.  ctest begins with the longest, so that no core is
 # idle at the end.
 set(SNOW_COSTS
-    serve_browser 110 python 88 cli_stream 70 cli_large 66 mpi_render 49
+    serve_browser 110 python 88 cli_stream 60 cli_large 66 mpi_render 49
     wasm_engine 48 wasm_page 48 mpi_serve 42 serve_sockets 42 isa_neon 42
     mpi_stall 40 package_wheel 40 test_stream 35 test_ranks 35 cli_figures 33
-    cli_documents 31 test_ranks_open 31 oracle_amr 30 package_cmake 30
+    cli_documents 31 test_ranks_open 31 oracle_amr 22 package_cmake 30
     oracle_zarr 29 oracle_vtk 29 cli_turntable 28 mpi_fail 25 test_same_bits 25
     oracle_damage 25 package_manual 24 package_within 22 cli_bench 22
     oracle_netcdf 22 oracle_hdf5 21 test_pipeline 21 mpi_insitu 21

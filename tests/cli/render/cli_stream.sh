@@ -40,11 +40,7 @@ slabs "floats" 46M "" a_f32.nrrd $look --view -z --range 0,255
 # What lies around is found slab by slab.
 slabs "occlusion" 16M "" a.nrrd $look --view -z --occlusion
 
-# Other modes; of the surface slabs that hold nothing of it too.
-# Each from one of the eyes; test_stream has all.
-slabs "mip" 46M 0 a_f32.nrrd -s 96x96 $left -m mip
-slabs "a surface" 46M 0 a_f32.nrrd -s 96x96 $left -m iso --iso 120
-slabs "sums" 46M 0.05 a_f32.nrrd -s 96x96 --view -z -m sum # another order of adding
+# Other modes are in test_stream; depths, and a surface of which some slabs hold nothing.
 for options in "-s 96x96 -m iso --iso 120" "$look --view -z"; do
     run 0 "depths, whole" "$TOOL" render a.nrrd $options -q -o whole.npy -y \
         --depth whole.depth.npy
