@@ -2,6 +2,7 @@
 #include "volume/volume.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Axes whose directions span less than this share of a box are taken for
  * lying in one plane: no scanner shears that much, while what single precision
