@@ -77,13 +77,19 @@ for name, at, content, said in (
     oracle.says(name, f"{name}.nii", said)
 # Vectors and colours of FSL lie where time is, others behind it.
 parts = oracle.sample("f4", (5, 6, 7, 3))
-for intent, key, options in ((2003, "channel", 1), (1007, "component", 2)):
+for intent, key, options in ((2003, "channel", 1), (2003, "component", 1),
+                             (1007, "component", 2)):
+    if key == "channel":  # bytes are colours, floats the directions of dtifit
+        given = (parts * 255).astype("u1")
+    else:
+        given = parts
     for shape in ((5, 6, 7, 3), (5, 6, 7, 1, 3)):
-        image = nibabel.Nifti1Image(parts.reshape(shape), np.diag([1, 2, 3, 1]))
+        image = nibabel.Nifti1Image(given.reshape(shape), np.diag([1, 2, 3, 1]))
         image.header["intent_code"] = intent
         nibabel.save(image, "parts.nii")
-        oracle.expect("parts.nii", parts[..., options].T, np.diag([1, 2, 3, 1]),
-                      [f"--{key}", options], name=f"intent {intent} {shape}")
+        oracle.expect("parts.nii", given[..., options].T, np.diag([1, 2, 3, 1]),
+                      [f"--{key}", options],
+                      name=f"intent {intent} {key} {shape}")
 once = gzip.compress(oracle.got("plain.nii"))
 halves = [gzip.compress(half) for half in (oracle.got("plain.nii")[:200],
                                            oracle.got("plain.nii")[200:])]

@@ -135,9 +135,12 @@ static void read_fields(const unsigned char *bytes, nifti_header *header) {
     header->estimate =
         intent == INTENT_ESTIMATE ||
         (intent >= INTENT_CORRELATION && intent <= INTENT_LOG10PVAL);
+    /* FSL calls directions colours, since they are shown as such. */
+    const bool floats = header->datatype == 16 || header->datatype == 64;
     header->vectors = intent == INTENT_DISPLACEMENT ||
-                      intent == INTENT_VECTOR || intent == INTENT_FNIRT;
-    header->colors = intent == INTENT_RGB || intent == INTENT_RGBA;
+                      intent == INTENT_VECTOR || intent == INTENT_FNIRT ||
+                      (intent == INTENT_RGB && floats);
+    header->colors = (intent == INTENT_RGB && !floats) || intent == INTENT_RGBA;
     header->surfaces = intent >= INTENT_CIFTI && intent <= INTENT_LAST;
     /* FSL keeps components where time is. */
     if ((header->vectors || header->colors) && header->dim[0] == 4 &&
