@@ -1,14 +1,19 @@
 # page.cmake - makes the page without a server, one file with all in it:
 #
-#   cmake -D TOP=.. -D ENGINE_FILE=engine.wasm -D OUT=viewer.html -P page.cmake
+#   cmake -D TOP=.. -D ENGINE_FILE=engine.wasm -D ESBUILD=esbuild -D OUT=viewer.html
+#         -P page.cmake
 #
 # `snowglass export` adds a volume to it.  The page can reach no other machine:
 # its policy says so.  The engine has at most 425,000 bytes when it is packed.
 cmake_minimum_required(VERSION 3.20)
 set(most 425000)
-set(FOLDER ${TOP}/web ${TOP}/wasm/page)
-set(ENGINE engine_wasm)
-include(${TOP}/serve/modules.cmake)
+set(folder ${OUT}.d)
+
+# Sets `text` to what esbuild makes of a file, by more words.
+macro(read_short path)
+  execute_process(COMMAND ${ESBUILD} ${path} --minify --charset=utf8 --log-level=warning ${ARGN}
+                  OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
+endmacro()
 
 # Appends a script, whose text no browser may take for its end.
 macro(add_script head)
@@ -37,11 +42,18 @@ set(text "${engine}")
 add_script(" id=\"engine\" type=\"text/plain\"")
 read_short(${TOP}/wasm/page/worker.js)
 add_script(" id=\"worker\" type=\"text/plain\"")
-add_module(viewer "")
-get_property(modules GLOBAL PROPERTY modules)
-read_short(${TOP}/wasm/page/shell.js)
-string(PREPEND text "function begin(host) {\nconst {document, window, location} = host;\n"
-       "${modules}\nreturn window.snowglass;\n}\n")
+# Among the modules engine_wasm.js takes the place of engine_server.js, which it imports.
+file(REMOVE_RECURSE ${folder})
+file(COPY ${TOP}/web/ DESTINATION ${folder})
+file(RENAME ${folder}/engine_server.js ${folder}/engine_socket.js)
+file(READ ${TOP}/wasm/page/engine_wasm.js text)
+string(REPLACE "/engine_server.js'" "/engine_socket.js'" text "${text}")
+file(WRITE ${folder}/engine_server.js "${text}")
+read_short(${folder}/viewer.js --bundle --format=esm)
+set(viewer "${text}")
+read_short(${TOP}/wasm/page/shell.js --bundle --format=esm)
+string(PREPEND text "function begin(host){const{document,window,location}=host;${viewer}"
+       "return window.snowglass}\n")
 add_script(" type=\"module\"")
 file(APPEND ${OUT}.new "</body>\n</html>\n")
 file(REMOVE ${OUT}.gz)

@@ -7,29 +7,41 @@ const TYPES = ['', 'image/jpeg', 'image/png', 'image/webp'];
 const FRAME = 12; // ms, less than that of a screen
 const FATAL = [4400, 4401, 4429]; // a message that it does not take, the secret, too many
 
+/** @typedef {import('./types').Keys} Keys */
+
 /**
  * Events by name: 'open', 'closed', 'picture', 'small' (of a slice or a preset,
  * in its pane), and the kinds of texts (info, look, state, figures, progress,
  * histogram, command, said, slice, value, depth).
  */
 export class ServerEngine {
+    /** @param {string} token */
     constructor(token) {
         this.token = token;
+        /** @type {Map<string, ((message: any) => void)[]>} */
         this.hearers = new Map();
         this.n = 0;
+        this.since = 0; // when what waits began to
+        /** @type {Map<number, number>} */
         this.sentAt = new Map();
+        /** @type {Map<number, Keys>} */
         this.unheard = new Map(); // changes that no state or picture has yet
+        /** @type {Keys|null} */
         this.waiting = null; // changes that are not sent yet
         this.painting = Promise.resolve();
         this.wait = 500;
         this.flushed = 0;
+        /** @type {Keys} */
         this.lost = {}; // what a server that went away has not heard
     }
 
+    /** @type {import('./types').Engine['on']} */
     on(name, hear) {
         this.hearers.set(name, [...(this.hearers.get(name) ?? []), hear]);
     }
 
+    /** @param {string} name
+     * @param {any} [value] */
     tell(name, value) {
         for (const hear of this.hearers.get(name) ?? [])
             hear(value);
@@ -54,6 +66,7 @@ export class ServerEngine {
         this.socket.onmessage = event => this.hear(event.data);
     }
 
+    /** @param {CloseEvent} event */
     closed(event) {
         const fatal = FATAL.includes(event.code);
         this.tell('closed', fatal ? `${event.reason} ${event.code === 4400 ? 'Load the page again.' : ''}` : 'The viewer does not answer. ' +
@@ -64,24 +77,28 @@ export class ServerEngine {
         this.wait = Math.min(2 * this.wait, 8000);
     }
 
+    /** @param {import('./types').Said} message */
     say(message) {
         if (this.socket?.readyState === WebSocket.OPEN)
             this.socket.send(JSON.stringify(message));
     }
 
-    /** Of the recipe as it is now. */
+    /** Of the recipe as it is now.
+     * @param {string} what */
     ask(what, more = {}) {
         this.flush();
         this.say({t: 'ask', what, ...more});
     }
 
+    /** @param {boolean} on */
     moving(on) {
         this.flush();
         this.say({t: 'moving', on});
     }
 
     /** Changes of a recipe; null takes a key out.  Sent at once, but not more often
-     * than each FRAME.  One that waited does not make those of all later frames wait. */
+     * than each FRAME.  One that waited does not make those of all later frames wait.
+     * @param {Keys} changes */
     set(changes) {
         if (!this.waiting) {
             this.since = performance.now();
@@ -101,6 +118,7 @@ export class ServerEngine {
         this.waiting = null;
     }
 
+    /** @param {string|ArrayBuffer} data */
     hear(data) {
         if (typeof data === 'string') {
             const message = JSON.parse(data);
@@ -113,7 +131,8 @@ export class ServerEngine {
         }
     }
 
-    /** What the page has changed since stays on top of a state. */
+    /** What the page has changed since stays on top of a state.
+     * @param {import('./types').State} state */
     renew({n, recipe}) {
         this.heard(n);
         for (const changes of [...this.unheard.values(), this.waiting ?? {}])
@@ -125,17 +144,20 @@ export class ServerEngine {
             }
     }
 
+    /** @param {number} n */
     heard(n) {
         for (const key of this.unheard.keys())
             if (key <= n)
                 this.unheard.delete(key);
     }
 
+    /** @param {ArrayBuffer} data */
     async paint(data) {
         const [magic, n, , , width, height, render, pack] = new Uint32Array(data, 0, 8);
         const [level, kind, pane] = new Uint8Array(data, 8);
         if (magic !== MAGIC) // as machines have it that browsers are on: little endian
             return;
+        /** @type {import('./types').Frame} */
         const frame = {n, level, kind, pane, width, height, render: render / 1000, pack: pack / 1000,
             data, bytes: data.byteLength,
             blob: new Blob([new Uint8Array(data, 32)], {type: TYPES[kind]})};
@@ -144,19 +166,21 @@ export class ServerEngine {
             return;
         }
         try {
-            frame.bitmap = await this.decode(frame);
+            const bitmap = frame.bitmap = await this.decode(frame);
             this.tell('picture', frame);
-            frame.bitmap.close();
+            bitmap.close();
         } finally { // the server waits for it
             this.say({t: 'ack', n});
             this.measure(n);
         }
     }
 
+    /** @param {import('./types').Frame} frame */
     decode({blob}) {
         return createImageBitmap(blob, {premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
     }
 
+    /** @param {number} n */
     measure(n) {
         this.heard(n);
         const sent = this.sentAt.get(n);

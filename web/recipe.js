@@ -10,22 +10,34 @@ const TOGETHER = 600; // ms in which changes of the same keys are one step
 /** What is of this page alone, and no part of the picture (slices.js). */
 const OWN = 'slices';
 
+/** @typedef {import('./types').Keys} Keys */
+
+/** @type {(a: unknown, b: unknown) => boolean} */
 const same = (a, b) => JSON.stringify(a ?? null) === JSON.stringify(b ?? null);
 
 export class Recipe {
+    /** @param {import('./types').Engine} engine */
     constructor(engine) {
         this.engine = engine;
+        /** @type {Keys} */
         this.keys = {};
+        /** @type {number[]|null} */
         this.size = null; // of this page: each has its own
+        /** @type {string[]} */
         this.computed = []; // keys that the server has written, and no page (serve/kept_look.h)
+        /** @type {Keys[]} */
         this.before = [];
+        /** @type {Keys[]} */
         this.after = [];
+        /** @type {((keys: Keys) => void)[]} */
         this.hearers = [];
-        this.gesture = null; // begun, then changed
+        /** @type {'begun'|'changed'|null} */
+        this.gesture = null;
         this.last = {names: '', at: 0};
         engine.on('state', message => this.take(message));
     }
 
+    /** @param {(keys: Keys) => void} hear */
     onChange(hear) {
         this.hearers.push(hear);
     }
@@ -35,7 +47,8 @@ export class Recipe {
             hear(this.keys);
     }
 
-    /** What another page, or the server, has changed. */
+    /** What another page, or the server, has changed.
+     * @param {import('./types').State} state */
     take({recipe, computed = []}) {
         this.keys = {...recipe, ...this.size && {size: this.size},
             ...OWN in this.keys && {[OWN]: this.keys[OWN]}};
@@ -59,26 +72,32 @@ export class Recipe {
         this.changed();
     }
 
-    /** What brings keys back to what they are now. */
+    /** What brings keys back to what they are now.
+     * @param {string[]} names
+     * @returns {Keys} */
     now(names) {
         return Object.fromEntries(names.map(name =>
             [name, this.computed.includes(name) ? null : this.keys[name] ?? null]));
     }
 
-    /** A step of these keys begins. */
+    /** A step of these keys begins.
+     * @param {string[]} names */
     remember(names) {
         this.before.push(this.now(names));
         this.before.splice(0, this.before.length - HISTORY);
         this.after = [];
     }
 
-    /** Whether a change goes on with the step before. */
+    /** Whether a change goes on with the step before.
+     * @param {string} names */
     goesOn(names) {
         const at = performance.now(), {last} = this;
         this.last = {names, at};
         return this.gesture ? this.gesture === 'changed' : names === last.names && at - last.at < TOGETHER;
     }
 
+    /** A step of the user's; null takes a key out.
+     * @param {Keys} changes */
     set(changes) {
         const names = Object.keys(changes).filter(key => !same(this.keys[key], changes[key]));
         if (!names.length)
@@ -92,6 +111,8 @@ export class Recipe {
         this.apply(changes);
     }
 
+    /** The same without a step.
+     * @param {Keys} changes */
     apply(changes) {
         this.size = changes.size ?? this.size;
         this.keys = {...this.keys};
@@ -107,9 +128,10 @@ export class Recipe {
         this.changed();
     }
 
-    /** Becomes another recipe whole, in one step; the size is the window's. */
+    /** Becomes another recipe whole, in one step; the size is the window's.
+     * @param {Keys} keys */
     replace(keys) {
-        const {size, ...changes} = {...keys};
+        const {size, ...changes} = keys;
         for (const key of Object.keys(this.keys))
             if (!(key in keys) && key !== 'size')
                 changes[key] = null;
@@ -117,9 +139,11 @@ export class Recipe {
         this.set(changes);
     }
 
-    /** Takes a step back; those that changed nothing are passed over. */
+    /** Takes a step back; those that changed nothing are passed over.
+     * @param {Keys[]} from
+     * @param {Keys[]} to */
     step(from, to) {
-        while (from.length && Object.entries(from.at(-1)).every(([key, value]) => same(this.keys[key], value)))
+        while (from.length && Object.entries(from.at(-1) ?? {}).every(([key, value]) => same(this.keys[key], value)))
             from.pop();
         const step = from.pop();
         if (!step)

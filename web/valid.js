@@ -1,18 +1,29 @@
 // valid.js - which keys of a recipe this page takes: those of links and of files come
 // from anywhere, and the page counts with what they hold.
 
+/** @typedef {(value: any) => boolean} Test */
+
+/** @type {Test} */
 const isNumber = value => Number.isFinite(value);
+/** @type {Test} */
 const isText = value => typeof value === 'string';
+/** @type {(length: number, each?: Test) => Test} */
 const isList = (length, each = isNumber) => value => Array.isArray(value) &&
     (!length || value.length === length) && value.every(each);
+/** @type {(...tests: Test[]) => Test} */
 const isOne = (...tests) => value => tests.some(test => test(value));
+/** @type {Test} */
 const isRange = value => isList(2)(value) && value[0] < value[1];
+/** @type {(low: number, high: number) => Test} */
 const isWithin = (low, high) => value => isNumber(value) && value >= low && value <= high;
+/** @type {(names: string[]) => Test} */
 const isNamed = names => value => isText(value) && names.includes(value);
 const arePoints = isList(0, isList(2));
+/** @type {Test} */
 const isOn = value => value === true;
 
-/** What a value has to be; other keys are for the server to judge. */
+/** What a value has to be; other keys are for the server to judge.
+ * @type {(info: import('./types').Info) => Record<string, Test>} */
 const shapes = ({times}) => ({
     mode: isText, preset: isText, view: isText, colormap: isText, background: isText, title: isText, labels: isText,
     azimuth: isNumber, elevation: isNumber, roll: isNumber, iso: isNumber, zoom: isWithin(1e-6, 1e6),
@@ -27,9 +38,15 @@ const shapes = ({times}) => ({
     'overlay-look': isText, channel: isOne(isText, isNumber), component: isOne(isText, isNumber),
     slices: value => isRange(value?.range) && isList(3)(value.at)});
 
-/** The keys that are good, and the names of the others. */
+/** The keys that are good, and the names of the others.
+ * @param {import('./types').Keys} keys
+ * @param {import('./types').Info} info */
 export function sifted(keys, info) {
-    const good = {}, wrong = [], tests = shapes(info);
+    const tests = shapes(info);
+    /** @type {import('./types').Keys} */
+    const good = {};
+    /** @type {string[]} */
+    const wrong = [];
     for (const [key, value] of Object.entries(keys)) {
         const known = info.keys?.includes(key) ?? Object.hasOwn(tests, key);
         if ((known || (key === 'slices' && info.slices)) && (tests[key]?.(value) ?? true))
@@ -40,5 +57,6 @@ export function sifted(keys, info) {
     return {good, wrong};
 }
 
-/** Says what was left out. */
+/** Says what was left out.
+ * @param {string[]} wrong */
 export const leftOut = wrong => wrong.length ? `Left out, as it is not understood: ${wrong.join(', ')}.` : '';

@@ -36,7 +36,7 @@ def texts_of_web():
             for each in quoted.findall(line):
                 code = r"\$\{[^}]*\}" if each[0] == "`" else "$^"
                 found += [part for part in re.split(code, each[1:-1])
-                          if " " in part]
+                          if " " in part and "${" not in part]
     return found
 
 
