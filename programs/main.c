@@ -82,6 +82,8 @@ typedef struct command {
 static int run_command(command *c) {
     options *opts = &c->opts;
     const verb_row *verb = c->verb;
+    first_volume first = {.context = NULL};
+    opts->first = verb->bit == VERB_RENDER ? &first : NULL;
     if (opts->verbosity < 0 && process_ranks() == 1) /* MPI's errors are kept */
         silence_others();
     if (process_ranks() > 1 && is_for_all(verb))
@@ -107,6 +109,7 @@ static int run_command(command *c) {
         done = process_agree(done);
     if (done != CONTINUE) {
         look_unload(opts);
+        first_volume_free(&first);
         return done;
     }
     if (is_for_all(verb))
@@ -118,6 +121,7 @@ static int run_command(command *c) {
         done = saved == SNOW_STATUS_OK ? done : saved;
     }
     look_unload(opts);
+    first_volume_free(&first);
     if (opts->verbosity > 0 &&
         verb->bit != VERB_RENDER) /* render reports more itself */
         say("seconds: total %.3f", seconds_now() - begin);

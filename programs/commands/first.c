@@ -2,6 +2,10 @@
 #include "commands/first.h"
 #include "commands/commands.h"
 #include "movie/movie_files.h"
+#include "picture/outputs.h"
+#include "run/log.h"
+#include "run/memory.h"
+#include "run/start.h"
 
 #include <string.h>
 #include <sys/stat.h>
@@ -82,12 +86,44 @@ void first_take(options *opts, const snow_volume_info *info) {
         opts->colormap = map;
 }
 
+void first_volume_free(first_volume *first) {
+    snow_volume_close(first->volume);
+    snow_context_free(first->context);
+}
+
+/* Where nothing else has to be known before: one picture, of voxels that fit
+ * into memory.  What is wrong is said when it is read again. */
+static bool open_at_once(options *opts) {
+    static options step; /* large */
+    first_volume *first = opts->first;
+    if (!first || opts->memory || opts->verbosity > 0 || process_ranks() > 1 ||
+        !memory_is_small_folder(opts->operands[0]) ||
+        !is_free(opts->output, opts->overwrite) ||
+        snow_context_new(NULL, &first->context) != SNOW_STATUS_OK)
+        return false;
+    step = *opts;
+    step.mixes = true;
+    const snow_volume_options data = data_options(&step);
+    show_warnings(opts, first->context, true);
+    snow_context_set_progress(first->context, progress_show, NULL);
+    const double begin = seconds_now();
+    progress_begin(opts, "reading");
+    const snow_status status = snow_volume_open(
+        first->context, opts->operands[0], &data, &first->volume);
+    progress_end(opts);
+    first->seconds = seconds_now() - begin;
+    if (status == SNOW_STATUS_OK)
+        first_take(opts, snow_volume_get_info(first->volume));
+    return status == SNOW_STATUS_OK;
+}
+
 void first_settle(options *opts) {
     snow_context *context = NULL; /* whose warnings come again */
     snow_volume_info info = {.size = sizeof info};
     step_files files = {.gaps = true};
     const snow_volume_options data = data_options(opts);
-    if (!is_open(opts) || snow_context_new(NULL, &context) != SNOW_STATUS_OK)
+    if (!is_open(opts) || open_at_once(opts) ||
+        snow_context_new(NULL, &context) != SNOW_STATUS_OK)
         return;
     const char *path = opts->operands[0];
     if (files_are_meant(path) && steps_find(opts, &files) == CONTINUE)

@@ -80,8 +80,9 @@ typedef struct options {
     const char *depth;             /* NULL: none */
     const char *colormap, *preset; /* NULL: automatic */
     const char *tf;                /* a file; NULL: none */
-    snow_look_file *loaded;   /* the content of that file, set by look_load */
-    snow_context *tf_context; /* that owns it */
+    snow_look_file *loaded;     /* the content of that file, set by look_load */
+    snow_context *tf_context;   /* that owns it */
+    struct first_volume *first; /* what was opened already; NULL: nothing */
     scale_value scale;
     point_list opacities, gradient_opacities;
     double window[2];         /* width, centre; NaN: not given */

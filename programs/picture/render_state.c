@@ -2,6 +2,7 @@
  * of the volume, and the first gets the pictures (snowglass/ranks.h). */
 #include "picture/render_state.h"
 #include "commands/commands.h"
+#include "commands/first.h"
 #include "options/config.h"
 #include "picture/annotations.h"
 #include "picture/light.h"
@@ -33,7 +34,16 @@ int render_state_check(const options *opts) {
 
 int render_state_new(const options *opts, render_state *out) {
     *out = (render_state){.opts = opts};
-    int done = open_render_context(opts, &out->context);
+    first_volume *first = opts->first;
+    int done = CONTINUE;
+    if (first && first->volume) {
+        out->context = first->context;
+        out->ready = first->volume;
+        out->times.read = first->seconds;
+        *first = (first_volume){.context = NULL};
+    } else {
+        done = open_render_context(opts, &out->context);
+    }
     if (done == CONTINUE) {
         snow_context_set_memory_limit(out->context, opts->memory);
         snow_context_set_progress(out->context, progress_show, NULL);
@@ -56,6 +66,7 @@ void render_state_free(render_state *s) {
     channels_close(&s->channels);
     snow_transfer_free(s->transfer);
     snow_volume_close(s->volume);
+    snow_volume_close(s->ready);
     free(s->figures);
     if (s->context)
         close_render_context(s->context);
@@ -146,6 +157,11 @@ void render_state_choose_shade(render_state *s) {
 
 /* Opens the volume in memory or in its file. */
 static int open_as_planned(render_state *s, const options *step) {
+    if (s->ready) {
+        s->volume = s->ready;
+        s->ready = NULL;
+        return CONTINUE;
+    }
     if (!s->plan.streams)
         return open_input(s->context, step, s->path, &s->volume);
 #ifdef __GLIBC__

@@ -38,8 +38,8 @@ typedef struct render_state {
     bool in_slabs; /* the volume did not fit beside its interesting voxels: this
                       one and all later ones stay in their files */
     snow_context *context;
-    snow_volume_info whole; /* the whole volume; ranks have parts */
-    snow_volume *volume;
+    snow_volume_info whole;      /* the whole volume; ranks have parts */
+    snow_volume *volume, *ready; /* that is drawn; first, opened already */
     snow_transfer *transfer;
     layers layers;        /* drawn with it */
     channel_set channels; /* of its file, the first of which it is */

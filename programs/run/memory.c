@@ -265,10 +265,8 @@ bool memory_holds(const options *opts, const snow_volume_info *info, int count,
     return false;
 }
 
-/* Whether the files of a folder are so small that their voxels certainly fit:
- * inspecting all of them twice would take time.  Slices are compressed to a
- * quarter at best. */
-static bool is_small_folder(const char *path) {
+/* Slices are compressed to a quarter at best. */
+bool memory_is_small_folder(const char *path) {
     char name[PATH_MAX];
     struct stat about;
     uint64_t bytes = 0;
@@ -318,7 +316,7 @@ int memory_plan_for(const options *opts, const char *path,
     uint64_t limit = opts->memory;
     sizes s;
     *out = (memory_plan){.may_stream = !why, .limit = opts->memory};
-    if (!opts->memory && !report && count < 2 && is_small_folder(path))
+    if (!opts->memory && !report && count < 2 && memory_is_small_folder(path))
         return CONTINUE;
     if (!measure(opts, path, data, count, &s)) {
         out->may_stream = false;

@@ -19,6 +19,10 @@ memory_need memory_needed(const options *opts, const snow_volume_info *info);
 bool memory_holds(const options *opts, const snow_volume_info *info, int count,
                   char *why, size_t size);
 
+/* Whether the files of a folder are so small that their voxels certainly fit:
+ * inspecting all of them twice would take time. */
+bool memory_is_small_folder(const char *path);
+
 /* How a volume is to be opened. */
 typedef struct memory_plan {
     bool streams; /* the voxels stay in the file (snow_volume_open_streamed) */

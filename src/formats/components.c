@@ -16,34 +16,31 @@
 /* Voxels that are converted at once. */
 #define RUN ((int64_t)1024)
 
-/* "|x|", the absolute values of a component, in copies of options that name the
- * component alone. */
-static bool is_absolute(const char *text, char name[24]) {
-    const size_t length = text ? strlen(text) : 0;
-    if (length < 3 || length > 24 || *text != '|' || text[length - 1] != '|')
-        return false;
-    memcpy(name, text + 1, length - 2);
-    name[length - 2] = 0;
-    return true;
-}
-
-/* The number of a component, -1 for the magnitude and for other texts. */
-static int64_t number_of(const char *text) {
-    char inner[24];
-    if (is_absolute(text, inner))
-        text = inner;
+/* The number of a component, of which "|x|" is the absolute value; -1 for the
+ * magnitude and for other texts. */
+static int64_t number_of(const char *text, bool *absolute) {
     static const char letters[] = "xyzw";
-    const char *at = *text && !text[1] ? strchr(letters, *text) : NULL;
+    char name[24];
     int64_t number;
+    const size_t length = strlen(text);
+    *absolute = length > 2 && length < sizeof name && *text == '|' &&
+                text[length - 1] == '|';
+    snprintf(name, sizeof name, "%.*s", *absolute ? (int)length - 2 : 23,
+             text + *absolute);
+    if (length >= sizeof name)
+        return -1;
+    const char *at = *name && !name[1] ? strchr(letters, *name) : NULL;
     if (at)
         return at - letters;
-    return snow_parse_int64(text, &number) && number >= 0 ? number : -1;
+    return snow_parse_int64(name, &number) && number >= 0 ? number : -1;
 }
 
 snow_status snow_component_check(snow_context *context, bool named,
                                  const snow_volume_options *options) {
     const char *text = options->component;
-    if (text && !named && strcmp(text, MAGNITUDE) != 0 && number_of(text) < 0)
+    bool absolute;
+    if (text && !named && strcmp(text, MAGNITUDE) != 0 &&
+        number_of(text, &absolute) < 0)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "--component %.64s: not a component; give x, y, z, w, "
                          "a number from 0, or magnitude",
@@ -143,9 +140,10 @@ snow_status snow_volume_pick_channel(snow_context *context,
                                      int64_t *out) {
     const char *text = options->component;
     const char *what = text && strcmp(text, "0") != 0 ? "component" : "channel";
+    bool absolute;
     if (text && !strcmp(text, MAGNITUDE))
         return refuse_magnitude(context, channels);
-    *out = text ? number_of(text) : options->channel;
+    *out = text ? number_of(text, &absolute) : options->channel;
     if (!info->channels)
         snow_channels_begin(info, channels, false);
     drop_empty_words(info);
@@ -434,7 +432,10 @@ static snow_status read_vector(snow_context *context, snow_component_fn *read,
                                snow_volume_info *info, snow_volume **volume) {
     snow_volume_options own = *options;
     char name[24];
-    const bool absolute = is_absolute(options->component, name);
+    bool absolute = false;
+    if (own.component)
+        snprintf(name, sizeof name, "%lld",
+                 (long long)number_of(own.component, &absolute));
     if (absolute)
         own.component = name;
     SNOW_TRY(read(user, &own, info, volume));

@@ -142,6 +142,10 @@ if command -v strace >/dev/null; then
     strace -f -e trace=openat -o trace "$TOOL" info mixed >/dev/null 2>&1
     opened=$(grep -c 's_[0-9].dcm' trace)
     check "each slice is opened a few times ($opened in all)" [ "$opened" -le 90 ]
+    strace -f -e trace=openat -o trace "$TOOL" render whole -o p.png -s 20 \
+        >/dev/null 2>&1
+    opened=$(grep -c 's_[0-9].dcm' trace)
+    check "a first picture lists them once ($opened)" [ "$opened" -le 30 ]
 else
     skipped "how often slices are opened" "there is no strace"
 fi
