@@ -477,7 +477,8 @@ def of_volume(volume: Any, path: Any, fields: Mapping[str, Any], clip: Any,
         return None
 
     def open(base: Any, number: int) -> _snowglass.Volume:
-        own = {"component": f"|{number}|"} if directions else {"channel": number}
+        own: Mapping[str, Any] = {"component": f"|{number}|"} if directions else \
+            {"channel": number}
         return _snowglass.open(_snowglass.Volume, os.fsencode(path),
                                {**fields, **own}, clip, 0, None, base)
 
