@@ -14,8 +14,8 @@ SNOW_API void snow_context_warn(snow_context *context, const char *format, ...)
     SNOW_PRINTF(2, 3);
 SNOW_API void snow_text_to_line(char *text, size_t capacity);
 /* snprintf, vsnprintf and sscanf whose numbers have a point in all locales. */
-SNOW_API int snow_text_print(char *text, size_t capacity, const char *format,
-    ...) SNOW_PRINTF(3, 4);
+SNOW_API int snow_text_print(
+    char *text, size_t capacity, const char *format, ...) SNOW_PRINTF(3, 4);
 SNOW_API int snow_text_vprint(
     char *text, size_t capacity, const char *format, va_list arguments);
 SNOW_API int snow_text_scan(const char *text, const char *format, ...);
@@ -27,19 +27,16 @@ SNOW_API void snow_context_release(snow_context *context, void *block);
 SNOW_API snow_status snow_context_reserve(snow_context *context,
     void *block_pointer, uint64_t keep, uint64_t count, size_t size);
 SNOW_API uint64_t snow_context_limit(const snow_context *context);
-
 /* snow_x_init_sized: zeros, then `defaults` (or NULL) as far as `size` reaches.
  * A new field lies behind the old record, not in its padding. */
 SNOW_API void snow_record_init(
     void *made, size_t size, const void *defaults, size_t known);
-
 /* Reads a caller's record (or NULL) into `copy`, which holds the defaults;
  * fills the caller's. Errors: BAD_USAGE, silent with `context` NULL. */
 SNOW_API snow_status snow_record_read(snow_context *context, const char *name,
     const void *given, void *copy, size_t known);
 SNOW_API snow_status snow_record_fill(snow_context *context, const char *name,
     const void *made, size_t known, void *out);
-
 #define SNOW_RECORD_READ(context, record, given, copy) \
     (record##_init(copy),                              \
         snow_record_read((context), #record, (given), (copy), sizeof *(copy)))
@@ -119,12 +116,10 @@ typedef bool snow_refined_fn(void *user, int64_t y, int64_t z, const double *);
 SNOW_API snow_status snow_cells_refine(snow_context *, const double *cells,
     const snow_box *box, const int64_t ratio[3], const snow_box *voxels,
     snow_refined_fn *take, void *user);
-/* Adds `count` cells of a row, the first at place `first` of it, to the wider
- * ones of `ratio`, from the first of these on that they lie in: sums of values
- * and the shares of those that there are. `shares` NULL: 1, of NaN 0. */
+/* Adds a row's cells from place `first` on to the wider ones of `ratio`: sums,
+ * and shares of what there is (NULL: 1, of NaN 0). */
 SNOW_API void snow_cells_add(const double *values, const float *shares,
-    int64_t first, int64_t count, const int64_t ratio[3], double *to_values,
-    float *to_shares);
+    int64_t first, int64_t count, const int64_t ratio[3], double *to, float *);
 /* A plan of moves, with its buffers; `clear` drops both. */
 typedef struct snow_voxels snow_voxels;
 SNOW_API snow_status snow_voxels_new(snow_comm *comm, snow_voxels **out);

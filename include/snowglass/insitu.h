@@ -2,8 +2,7 @@
  *
  * Setters are local and hold until called again. If one fails, so does the next
  * collective call, on all ranks. Collective calls return one status on all
- * ranks; only they read voxels. After an error the next step may be tried,
- * unless the communicator is broken. */
+ * ranks; only they read voxels. After an error the next step may be tried. */
 #ifndef SNOWGLASS_INSITU_H
 #define SNOWGLASS_INSITU_H
 
@@ -51,9 +50,7 @@ SNOW_API snow_status snow_insitu_set_brick(snow_insitu *insitu, int id,
  * fastest, halo included. One type for all bricks. */
 SNOW_API snow_status snow_insitu_set_voxels(snow_insitu *insitu, int id,
     snow_type type, const void *voxels, const int64_t stride[3]);
-
-/* A brick's cells, and its halo's, are so many voxels wide, and finer bricks
- * cover them (docs/insitu.md, Levels). Before its voxels, which are floats. */
+/* A brick's cells, floats, are so many voxels wide; finer bricks cover them. */
 SNOW_API snow_status snow_insitu_set_cells(
     snow_insitu *insitu, int id, const int64_t cells[3]);
 typedef struct snow_world_brick { /* a brick by its place in the world */
@@ -65,7 +62,6 @@ typedef struct snow_world_brick { /* a brick by its place in the world */
  * 1; the higher owns voxels that two share. Errors: BAD_USAGE (no grid). */
 SNOW_API snow_status snow_insitu_place_bricks(snow_insitu *insitu,
     const snow_world_brick *bricks, int count, const double spacing[3]);
-
 typedef enum snow_ghosts { /* where ghost voxels come from */
     SNOW_GHOSTS_AUTO = 0,  /* the bricks' halos, else from their owners */
     SNOW_GHOSTS_NONE       /* outermost voxels are repeated: faint seams */
@@ -116,8 +112,7 @@ typedef struct snow_insitu_settings {
 SNOW_RECORD(snow_insitu_settings);
 SNOW_API snow_status snow_insitu_set(
     snow_insitu *insitu, const snow_insitu_settings *settings);
-/* Collective. Whether rank 0 can write pictures there (NULL: the output that is
- * set), before any is drawn. Errors: BAD_OUTPUT (no folder), BAD_USAGE. */
+/* Collective. Whether rank 0 can write there (NULL: where it is told to). */
 SNOW_API snow_status snow_insitu_try_output(
     snow_insitu *insitu, const char *output);
 /* The time of the next step, which annotations may have. */

@@ -47,9 +47,8 @@ typedef struct snow_recipe {
     double limit_seconds; /* in situ, as in snow_insitu_limits; 0: not given */
     int64_t limit_bytes;
     const char *channels, *steps; /* of the tool: --channel, --time; or NULL */
-    const char *grid; /* of the tool's slices, as is `ortho` */
-    bool ortho;
-    bool sync; /* in situ, as in snow_insitu_settings */
+    const char *grid;             /* of the tool's slices, as is `ortho` */
+    bool ortho, unused[7], sync;  /* sync: as in snow_insitu_settings */
 } snow_recipe;
 SNOW_RECORD(snow_recipe);
 

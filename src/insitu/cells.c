@@ -16,94 +16,9 @@
 #include <math.h>
 #include <string.h>
 
-#define REACH 3                      /* of snow_cells_refine */
 #define RANK_ROOM (INT64_C(1) << 40) /* values of the row for one rank */
 
-/* What a rank needs of each level; `refined` is what has to be made of the
- * level below, a part of it. */
-typedef struct level_needs {
-    snow_box cells[SNOW_LEVELS_MOST], refined[SNOW_LEVELS_MOST];
-} level_needs;
-
-static int64_t larger(int64_t a, int64_t b) {
-    return a > b ? a : b;
-}
-
-static int64_t smaller(int64_t a, int64_t b) {
-    return a < b ? a : b;
-}
-
-/* The cells of a level that lie in a box of voxels. */
-static snow_box cells_in(const snow_box *voxels, const int64_t size[3]) {
-    snow_box out;
-    for (int i = 0; i < 3; i++) {
-        out.first[i] = (voxels->first[i] + size[i] - 1) / size[i];
-        out.count[i] = larger(
-            0, (voxels->first[i] + voxels->count[i]) / size[i] - out.first[i]);
-    }
-    return out;
-}
-
 /* --- planning ------------------------------------------------------------- */
-
-static void unite(snow_box *all, const snow_box *more) {
-    if (!snow_box_voxels(all)) {
-        *all = *more;
-        return;
-    }
-    for (int i = 0; i < 3; i++) {
-        const int64_t end = larger(all->first[i] + all->count[i],
-                                   more->first[i] + more->count[i]);
-        all->first[i] = smaller(all->first[i], more->first[i]);
-        all->count[i] = end - all->first[i];
-    }
-}
-
-/* The part of a level where coarser cells are what there is. */
-static snow_box find_refined(const snow_insitu_levels *levels, int level,
-                             const snow_box *cells) {
-    snow_box all = {{0, 0, 0}, {0, 0, 0}};
-    for (int64_t n = 0; n < levels->count; n++) {
-        const snow_level_brick *brick = &levels->bricks[n];
-        for (int64_t p = brick->pieces[0];
-             p < brick->pieces[1] && brick->level < level; p++) {
-            const snow_box piece =
-                cells_in(&levels->pieces[p], levels->sizes[level]);
-            snow_box shared;
-            if (snow_box_intersect(&piece, cells, &shared))
-                unite(&all, &shared);
-        }
-    }
-    return all;
-}
-
-/* The cells of the level below that those of a box are refined from. */
-static snow_box find_below(const snow_insitu *insitu, int level,
-                           const snow_box *refined) {
-    const int64_t *size = insitu->levels.sizes[level];
-    const int64_t *below = insitu->levels.sizes[level - 1];
-    snow_box out = {{0, 0, 0}, {0, 0, 0}};
-    for (int i = 0; i < 3 && snow_box_voxels(refined); i++) {
-        const int64_t ratio = below[i] / size[i];
-        const int64_t last = refined->first[i] + refined->count[i] - 1;
-        out.first[i] = larger(0, refined->first[i] / ratio - REACH);
-        out.count[i] = smaller(insitu->whole.dims[i] / below[i],
-                               last / ratio + REACH + 1) -
-                       out.first[i];
-    }
-    return out;
-}
-
-static void find_needs(const snow_insitu *insitu, const snow_box *wanted,
-                       level_needs *out) {
-    const snow_insitu_levels *levels = &insitu->levels;
-    memset(out, 0, sizeof *out);
-    out->cells[levels->finest] = *wanted;
-    for (int l = levels->finest; l > 0; l--) {
-        out->refined[l] = find_refined(levels, l, &out->cells[l]);
-        out->cells[l - 1] = find_below(insitu, l, &out->refined[l]);
-    }
-}
 
 /* Values that a block takes in the row: a mean is a double. */
 static int64_t count_values(const snow_insitu *insitu,
@@ -156,11 +71,12 @@ static snow_status list_block(snow_insitu *insitu, int to, int64_t *place,
 /* The blocks of a piece of a brick: its own cells, and their means. */
 static snow_status list_piece(snow_insitu *insitu, int to, int64_t *place,
                               const snow_level_brick *brick,
-                              const snow_box *piece, const level_needs *needs) {
+                              const snow_box *piece,
+                              const snow_level_needs *needs) {
     snow_level_block block = {.brick = brick};
     for (block.level = brick->level; block.level >= 0; block.level--) {
         const snow_box cells =
-            cells_in(piece, insitu->levels.sizes[block.level]);
+            snow_level_cells_in(piece, insitu->levels.sizes[block.level]);
         if (snow_box_intersect(&cells, &needs->cells[block.level],
                                &block.cells))
             INSITU_TRY(list_block(insitu, to, place, &block));
@@ -172,9 +88,9 @@ static snow_status list_blocks_to(snow_insitu *insitu,
                                   const snow_insitu_layout *layout, int to) {
     const snow_insitu_levels *levels = &insitu->levels;
     const snow_box wanted = snow_insitu_recut_box(insitu, layout, to);
-    level_needs needs;
+    snow_level_needs needs;
     int64_t place = to * RANK_ROOM;
-    find_needs(insitu, &wanted, &needs);
+    snow_insitu_find_needs(insitu, &wanted, &needs);
     for (int64_t n = 0; n < levels->count; n++) {
         const snow_level_brick *brick = &levels->bricks[n];
         for (int64_t p = brick->pieces[0]; p < brick->pieces[1]; p++)
@@ -344,8 +260,8 @@ static snow_status take_all(const snow_insitu *insitu, size_t value,
                             level_cells *levels) {
     const snow_level_blocks *list = &insitu->levels.received;
     const char *at = list->values;
-    level_needs needs;
-    find_needs(insitu, &insitu->layout.stored, &needs);
+    snow_level_needs needs;
+    snow_insitu_find_needs(insitu, &insitu->layout.stored, &needs);
     for (int l = 0; l <= insitu->levels.finest; l++) {
         levels[l].insitu = l == insitu->levels.finest ? insitu : NULL;
         levels[l].box = needs.cells[l];

@@ -6,7 +6,8 @@
  *   data.c    takes voxels, by way of    agree.c   what all ranks know
  *                                        layout.c  who draws what
  *                                        levels.c  cells that are wider, and
- *                                        cells.c   where they go,
+ *                                        needs.c   which are needed where,
+ *                                        cells.c   how they go there,
  *                                        means.c   what is below
  *   draw.c    makes pictures of them     limits.c  with less and less work
  *   output.c  and writes them            enlarge.c at the size asked for
@@ -269,6 +270,16 @@ bool snow_insitu_is_even(const snow_insitu *insitu);
 /* Collective.  Lists the bricks of all ranks, and their pieces; those of this
  * rank are what it holds. */
 snow_status snow_insitu_cut_levels(snow_insitu *insitu);
+
+/* What a rank needs of each level, for a box of voxels; `refined` is what has
+ * to be made of the level below, a part of it (needs.c).  The cells of a size
+ * that lie in a box of voxels. */
+typedef struct snow_level_needs {
+    snow_box cells[SNOW_LEVELS_MOST], refined[SNOW_LEVELS_MOST];
+} snow_level_needs;
+void snow_insitu_find_needs(const snow_insitu *insitu, const snow_box *wanted,
+                            snow_level_needs *out);
+snow_box snow_level_cells_in(const snow_box *voxels, const int64_t size[3]);
 
 /* Collective.  Plans which cells go where; moves them, and refines what arrives
  * to the dense box (cells.c). */
