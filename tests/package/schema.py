@@ -40,6 +40,7 @@ CASES = [
     {"preset": "nope"}, {"colormap": "viridis"}, {"colormap": "nope"},
     {"scale": 1}, {"scale": "log"}, {"scale": "symlog"}, {"scale": "symlog:2"},
     {"scale": "ln"}, {"scale": "symlog:"}, {"reread": True}, {"reread": 1}, {"limit-seconds": 0.5},
+    {"sync": True}, {"sync": 2},
     {"limit-bytes": -1}, {"title": "t"},
     {"title": 3}, {"legend": "q (K)"}, {"legend": 3}, {"annotate": "time"},
     {"annotate": "date"}, {"annotate": "time=%.2f"}, {"box": "axes"},

@@ -122,8 +122,7 @@ for output, text in (("none/f_%d.png", "make the folder first"),
     refuses(lambda: insitu.Movie(comm, (4, 4, 4), output=output), text,
             status=4 if "/" in output else None)
 
-# Cells of two voxels, in four fields of four by four, are the voxels of a linear
-# field but in the outermost ones.
+# Cells of two voxels of a linear field are drawn as its voxels are.
 coarse = numpy.arange(8, dtype=numpy.float32)[None, None, :] * 2 + 100.5
 with insitu.Movie(comm, (16, 8, 8 * comm.size), output="c_%02d.png", size=40,
                   range=(100, 115), bits=16) as movie:
