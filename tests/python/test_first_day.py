@@ -176,7 +176,7 @@ class FirstPictures(InFolder):
         columns = sg.Volume("wrf.nc", dataset="T", vertical="height")
         self.assertFalse(numpy.isnan(numpy.asarray(flat)).any())
         self.assertTrue(numpy.isnan(numpy.asarray(columns)).any())
-        with self.assertRaises(sg.Error):
+        with self.assertRaisesRegex(ValueError, "vertical=depth"):
             sg.Volume("wrf.nc", dataset="T", vertical="depth")
 
     @needs("xarray", "netCDF4")
