@@ -277,7 +277,7 @@ static char *recipe_text(const options *opts, const snow_volume_info *info,
         "series",  "mask",          "labels",     "crop",     "overwrite",
         "memory",  "component",     "allow-gaps", "threads",  "isa",
         "method",  "deterministic", "tf",         "encoding", "label-table",
-        "levels",  "z-scale",       "suv",       "vertical"};
+        "levels",  "z-scale",       "suv",        "vertical"};
     json_t *tree = config_tree(opts, verb_of(VERB_RENDER));
     for (size_t i = 0; i < sizeof done / sizeof *done; i++)
         json_object_del(tree, done[i]);
