@@ -59,7 +59,7 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
 # idle at the end.
 set(SNOW_COSTS
     serve_browser 110 python 88 cli_stream 60 cli_large 66 mpi_render 49
-    wasm_engine 48 wasm_page 48 mpi_serve 42 serve_sockets 42 isa_neon 42
+    wasm_engine 48 wasm_page 54 mpi_serve 42 serve_sockets 42 isa_neon 42
     mpi_stall 40 package_wheel 40 test_stream 35 test_ranks 35 cli_figures 33
     cli_documents 31 test_ranks_open 31 oracle_amr 22 package_cmake 30
     oracle_zarr 29 oracle_vtk 29 cli_turntable 28 mpi_fail 25 test_same_bits 25

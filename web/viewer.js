@@ -41,7 +41,7 @@ const views = make('div', {className: 'views'}, picture);
 // --- what is said --------------------------------------------------------------
 
 let quiet;
-function say(line, stays = false) {
+function say(line, stays = false, time = 6000) {
     said.textContent = line;
     picture.onpointerdown = ({target}) => stays || target === said || say(''); // it covers what is touched
     clearTimeout(quiet);
@@ -49,7 +49,7 @@ function say(line, stays = false) {
         quiet = setTimeout(() => {
             if (document.activeElement !== said) // it is read
                 said.textContent = '';
-        }, 6000);
+        }, time);
 }
 
 page.say = say;

@@ -7,7 +7,7 @@
 // File; the first picture may be all.  Of each there are then in FOLDER too the pictures
 // NAME-0.bin (draft), NAME-1.bin, NAME-2.bin, as they go to the page, and NAME.json: what
 // was said, the command, the qualities of all pictures, and the processor's milliseconds of each thread.
-// `reads` has the bytes of the longest read and of all.
+// `reads` has the bytes of the longest read and of all, and how many there were.
 // A turn comes when the picture at rest was begun.  Where it is narrow, there is no room
 // for memory that threads share.
 const fs = require('fs');
@@ -42,7 +42,7 @@ globalThis.FileReaderSync = class {
         const bytes = new Uint8Array(end - begin), file = fs.openSync(path);
         const got = fs.readSync(file, bytes, 0, bytes.length, begin);
         fs.closeSync(file);
-        reads = {most: Math.max(reads.most, got), all: reads.all + got};
+        reads = {most: Math.max(reads.most, got), all: reads.all + got, count: reads.count + 1};
         return bytes.buffer;
     }
 };
@@ -54,7 +54,7 @@ function narrowMemory(how) {
 }
 
 async function run({name, path, files, kept, recipe, turn, threads = 1, narrow, first}) {
-    reads = {most: 0, all: 0};
+    reads = {most: 0, all: 0, count: 0};
     const others = helpers(worker);
     WebAssembly.Memory = narrow ? narrowMemory : Memory;
     const list = files.map(each => kept ? {name: each, file: new Kept(`${folder}/${each}`)} : {

@@ -2,7 +2,7 @@
 //
 //   node page.mjs PLAYWRIGHT CHROMIUM FOLDER PAGES
 //
-// PAGES is a JSON list of {url, volumes}: each of the volumes is a list [NAME, FILE...],
+// PAGES is a JSON list of {url, volumes, damaged}: the last is a file that is refused.  Each of the volumes is a list [NAME, FILE...],
 // whose files, or a folder, are dropped on the page, if there are any.  The last one of a
 // page is turned, sliced, and gets states.  Of each there are then in FOLDER the picture
 // at rest and the command, NAME-rest.png and NAME.txt, of the last one a screenshot too.
@@ -105,6 +105,25 @@ async function states() {
     check('which keeps the volume', await title() === named, await title());
 }
 
+/** A file that cannot be opened takes nothing away. */
+async function refusal(damaged) {
+    const named = await title(), frames = () => page.evaluate(() => window.snowglass.page.frames);
+    const {zoom: before} = await page.evaluate(() => window.snowglass.recipe.keys);
+    await drop([damaged]);
+    await page.waitForFunction(() => /damaged/.test(document.querySelector('.said').textContent), null, SELDOM);
+    const said = await page.locator('.said').textContent(), drawn = await frames();
+    check('a file that is refused is named', /damaged.nrrd/.test(said) && !/Reading/.test(said), said);
+    check('and the volume before is shown', await title() === named && await page.locator('main').count() === 1);
+    await page.keyboard.press('+');
+    await page.waitForFunction(was => window.snowglass.page.frames > was, drawn, SELDOM);
+    await rest();
+    const {zoom} = await page.evaluate(() => window.snowglass.recipe.keys);
+    check('by an engine that still draws, and hears a key once', Math.abs(zoom / (before ?? 1) - 1.25) < 0.01 ||
+        zoom > (before ?? 1), zoom);
+    await page.keyboard.press('z');
+    await rest();
+}
+
 /** The picture at rest, in base64, and its command. */
 async function keep() {
     const picture = await page.evaluate(() => new Promise(done => {
@@ -137,7 +156,7 @@ async function end(url) {
     await page.close();
 }
 
-for (const {url, volumes} of JSON.parse(pages)) {
+for (const {url, volumes, damaged} of JSON.parse(pages)) {
     await open(url);
     for (const [i, [each, ...files]] of volumes.entries()) {
         name = each;
@@ -155,6 +174,8 @@ for (const {url, volumes} of JSON.parse(pages)) {
         }
         await keep();
     }
+    if (damaged)
+        await refusal(damaged);
     await end(url);
 }
 await browser.close();

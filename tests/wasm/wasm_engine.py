@@ -183,6 +183,8 @@ for job in jobs:
     job["kept"] = job["name"] == "slabs"
 jobs += [{"name": "whole", "path": "slabs.nrrd", "files": ["slabs.nrrd"],
           "kept": True, "recipe": {"size": [120, 100]}},
+         {"name": "once", "path": "series", "files": series, "kept": True,
+          "recipe": {"size": [120, 90]}},
          {"name": "large", "path": "large.nrrd", "files": [write_large()],
           "kept": True, "first": True, "recipe": {
               "size": [120, 100], "range": [20, 200], "mode": "mip"}}]
@@ -222,6 +224,10 @@ def read_of(name):
 
 said, most, all_of_it = read_of("whole")
 check("what fits is read once", 0.99 < all_of_it < 1.05, all_of_it)
+with open(os.path.join(OUT, "once.json")) as file:
+    reads = json.load(file)["reads"]
+check("each file of a series is read once", reads["count"] == len(series) and reads["all"] == sum(
+    os.path.getsize(os.path.join(OUT, name)) for name in series), reads)
 said, most, all_of_it = read_of("slabs")
 check("what does not stays in its file, which is read for each picture",
       most < 0.2 and all_of_it > 3, (most, all_of_it))

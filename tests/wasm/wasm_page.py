@@ -1,14 +1,17 @@
 """The page without a server in Chromium: a phantom, dropped files, a page that
 `snowglass export` made, and one that a server sends so that it may share memory."""
+import base64
 import functools
 import http.server
 import json
 import os
 import shlex
 import shutil
+import struct
 import subprocess
 import sys
 import threading
+import zlib
 
 TOOL, OUT, TOP = map(os.path.abspath, sys.argv[1:4])
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -50,11 +53,13 @@ def tool(*words):
                           text=True)
 
 
-def watch(*pages):
-    """Looks at pages, each with its volumes, and runs their commands where those are."""
+def watch(*pages, damaged):
+    """Looks at pages, each with its volumes, and runs their commands where those are;
+    on the first one the damaged file is dropped too."""
     done = subprocess.run(
         [node, os.path.join(HERE, "page.mjs"), PLAYWRIGHT, chromium, OUT,
-         json.dumps([{"url": url, "volumes": volumes} for url, *volumes in pages])],
+         json.dumps([{"url": url, "volumes": volumes, "damaged": damaged if i == 0 else None}
+                     for i, (url, *volumes) in enumerate(pages)])],
         timeout=500)
     check("the pages", done.returncode == 0, done.returncode)
     for name in (volume[0] for _, *volumes in pages for volume in volumes):
@@ -81,6 +86,50 @@ for z in range(11):  # the order is not that of the names
 other = os.path.join(OUT, "other.nrrd")  # whose title is not the page's
 shutil.copy(os.path.join(OUT, "head.nrrd"), other)
 
+with open(os.path.join(OUT, "damaged.nrrd"), "wb") as file:
+    file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 9 9 9\nencoding: raw\n\nabc")
+with open(os.path.join(OUT, "head.raw"), "rb") as file:
+    voxels = file.read()
+
+
+def vti(name, words, grid, array, appended=""):
+    """One of VTK's image data of 64x64x48 values."""
+    with open(os.path.join(OUT, name), "wb") as file:
+        file.write(f'<?xml version="1.0"?>\n<VTKFile type="ImageData" version="1.0" {words}>\n'
+                   f'<ImageData {grid}>\n{array}\n</Piece></ImageData>'.encode() +
+                   (appended or b"") + b"</VTKFile>\n")
+    return os.path.join(OUT, name)
+
+
+def packed_vti():
+    """Cells of 16 bits, big ends first, in blocks of zlib behind the text; another array lies
+    before them."""
+    wide = b"".join(struct.pack(">h", 9 * value - 700) for value in voxels)
+    pieces = [wide[at:at + 40000] for at in range(0, len(wide), 40000)]
+    blocks = [zlib.compress(piece) for piece in pieces]
+    head = struct.pack(f">{3 + len(blocks)}Q", len(blocks), 40000, len(pieces[-1]) % 40000,
+                       *map(len, blocks))
+    extent = "3 67 0 64 -2 46"
+    return vti("packed.vti", 'byte_order="BigEndian" header_type="UInt64" '
+               'compressor="vtkZLibDataCompressor"',
+               f'WholeExtent="{extent}" Origin="5 6 7" Spacing="1 1.5 2" '
+               'Direction="0 1 0 -1 0 0 0 0 1"',
+               f'<Piece Extent="{extent}"><CellData Scalars="b &amp; c">'
+               '<DataArray type="Float32" Name="a" format="appended" offset="0"/>'
+               '<DataArray type="Int16" Name="b &amp; c" format="appended" offset="12"/></CellData>',
+               b'\n<AppendedData encoding="raw">\n   _' + bytes(12) + head + b"".join(blocks) +
+               b"\n</AppendedData>")
+
+
+def plain_vti():
+    """Points in the element, in base64."""
+    extent = "0 63 0 63 0 47"
+    text = base64.b64encode(struct.pack("<I", len(voxels)) + voxels).decode()
+    return vti("plain.vti", 'byte_order="LittleEndian"', f'WholeExtent="{extent}" Spacing="1 1 1.2"',
+               f'<Piece Extent="{extent}"><PointData><DataArray type="UInt8" Name="a" '
+               f'format="binary">\n{text}\n</DataArray></PointData>')
+
+
 with open(os.path.join(OUT, "points.json"), "w") as file:
     file.write('{"snowglass-tf": 1, "values": "data", "opacities": '
                '[[20, 0], [90, 0.2], [200, 0.9]]}')
@@ -106,11 +155,12 @@ with http.server.ThreadingHTTPServer(
     watch(("file://" + PAGE, ["phantom"],
            ["apart", os.path.join(OUT, "apart.nhdr"), os.path.join(OUT, "head.raw")],
            ["folder", os.path.join(OUT, "series")],
+           ["packed", packed_vti()], ["plain", plain_vti()],
            ["raw", os.path.join(OUT, "head.raw")],
            ["dropped", os.path.join(OUT, "head.nrrd")]),
           ("file://" + os.path.join(OUT, "made.html"), ["made"]),
           (f"http://127.0.0.1:{server.server_port}/made.html", ["shared"],
-           ["shared-dropped", other]))
+           ["shared-dropped", other]), damaged=os.path.join(OUT, "damaged.nrrd"))
     server.shutdown()
 again = tool("export", "made.html", "head.nrrd")
 check("a page is not replaced", again.returncode == 4 and

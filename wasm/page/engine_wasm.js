@@ -12,6 +12,8 @@ export class ServerEngine extends SocketEngine {
         this.on('said', ({text}) => {
             this.last = text;
         });
+        for (const name of ['info', 'state'])
+            this.on(name, host.opened);
     }
 
     open() {
@@ -22,7 +24,13 @@ export class ServerEngine extends SocketEngine {
         this.worker.postMessage({t: 'open', ...host.volume},
             host.volume.files.flatMap(({bytes}) => bytes ?? []));
         this.tell('open');
-        this.reading = setTimeout(() => this.tell('closed', `Reading ${host.volume.path}`), PATIENCE);
+        this.reading = setTimeout(() => this.inform(host.says, `Reading ${host.volume.path}`), PATIENCE);
+    }
+
+    /** A line on this page, unless another one has it as yet. */
+    inform(there, text) {
+        if (!there(text))
+            this.tell('closed', text);
     }
 
     close() {
@@ -64,9 +72,7 @@ export class ServerEngine extends SocketEngine {
             return;
         }
         const text = data.text || this.last || 'The file cannot be opened.';
-        if (text.includes('--dims')) // raw data
-            host.ask?.(text);
-        this.tell('closed', text.replace(/; install .*build again$/,
+        this.inform(host.refused, text.replace(/; install .*build again$/,
             '; snowglass serve shows it, and snowglass export makes a page of it'));
     }
 

@@ -2,10 +2,13 @@
 // it, a phantom, or files that are dropped or chosen.  page.cmake puts this behind
 // `begin`, which has the modules of the viewer.
 
+import {readable} from './vti.js';
+
 const body = document.body;
 const from = id => document.getElementById(id);
 const WORKER = URL.createObjectURL(new Blob([from('worker').textContent], {type: 'text/javascript'}));
 const PIECE = 1 << 20; // letters of base64 at once
+const LONG = 60000; // ms, or until the picture is touched
 
 /** The bytes of a script in base64. */
 function bytesOf(script) {
@@ -23,34 +26,65 @@ function bytesOf(script) {
 const engine = new Response(new Blob([bytesOf(from('engine'))]).stream()
     .pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
 
-let page, stop, shown, takeRecipe;
+let page, stop, shown, takeRecipe, coming, newest;
 
-/** Shows a volume in the place of the one before. */
+/** Shows a volume in the place of the one before, which stays until the new one is open: a
+ * file may be refused. */
 async function show(volume) {
-    const wasm = await engine;
-    shown = volume;
-    stop?.abort();
-    page?.engine.close();
-    stop = new AbortController();
-    const main = document.createElement('main'), {signal} = stop;
+    const own = newest = {}, [wasm, files] = await Promise.all([engine, readable(volume)]);
+    if (newest !== own)
+        return;
+    coming?.engine.close();
+    const main = document.createElement('main'), listeners = [], stopping = new AbortController();
+    let aside = !!page; // another volume is shown, and its page says what becomes of this one
+    const listen = each => aside ? listeners.push(each) : document.addEventListener(...each);
     main.id = 'viewer';
-    from('viewer').replaceWith(main);
     const mine = new Proxy(document, {
         get(real, name) {
             if (name === 'addEventListener')
-                return (kind, hear, how) => real.addEventListener(kind, hear, {...how, signal});
+                return (kind, hear, how) => listen([kind, hear, {...how, signal: stopping.signal}]);
+            if (name === 'getElementById')
+                return id => main.id === id ? main : real.getElementById(id);
             const value = real[name];
             return typeof value === 'function' ? value.bind(real) : value;
         },
         set: (real, name, value) => Reflect.set(real, name, value)});
-    page = begin({volume: {wasm, recipe: {}, ...volume}, work: () => new Worker(WORKER),
-        ask: volume.files[0]?.file && (text => askRaw(volume, text)), document: mine, window: {}, location});
-    window.snowglass = page; // for the console, and for tests
-    takeRecipe = page.take;
-    page.take = files => showFiles([...files].map(file => ({name: file.name, file})));
-    page.file.multiple = true;
+    const host = {volume: {wasm, recipe: {}, ...volume, files}, work: () => new Worker(WORKER), document: mine, window: {},
+        location,
+        /** The volume is open. */
+        opened() {
+            if (coming !== made)
+                return;
+            aside = false;
+            stop?.abort();
+            page?.engine.close();
+            [page, stop, shown, coming, takeRecipe] = [made, stopping, volume, null, take];
+            window.snowglass = page; // for the console, and for tests
+            from('viewer').replaceWith(main);
+            listeners.forEach(listen);
+        },
+        /** Whether another page has said it. */
+        says(text) {
+            if (aside)
+                page.page.say(text, false, LONG);
+            return aside;
+        },
+        refused(text) {
+            const raw = text.includes('--dims') && volume.files[0]?.file;
+            if (aside)
+                made.engine.close();
+            if (raw)
+                askRaw(volume, text);
+            return host.says(raw ? '' : text);
+        }};
+    const made = begin(host), {take} = made;
+    coming = made;
+    made.take = files => showFiles([...files].map(file => ({name: file.name, file})));
+    made.file.multiple = true;
     main.querySelector('[title^="Open a recipe"]').title = 'Open a volume of this machine, or a recipe; ' +
         'or drop it, a folder of DICOM too, on the page';
+    if (!aside)
+        host.opened();
 }
 
 // --- raw data ------------------------------------------------------------------

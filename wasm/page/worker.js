@@ -10,6 +10,9 @@
 const UNDER_WAY = 2; // pictures that the page has not painted yet
 const MEMORY = {initial: 256, maximum: 32768}; // as the engine declares it
 const THREADS_MOST = 16;
+const WHOLE = 1 << 20; // bytes of a file that is read at once,
+const AHEAD = 1 << 16; // of a larger one,
+const KEPT = 1 << 28; // and of all that is kept until the volume is open
 
 /** The files by their paths, and what the engine asks of them. */
 class Files {
@@ -17,6 +20,13 @@ class Files {
         this.list = list;
         this.numbers = new Map(list.map(({name}, i) => [name, i]));
         this.reader = typeof FileReaderSync === 'undefined' ? null : new FileReaderSync();
+        this.folders = new Map(); // the names in each
+        this.forget();
+    }
+
+    forget() {
+        this.ahead = new Map(); // of files, the last bytes that were read, the oldest first
+        this.room = KEPT;
     }
 
     static plain(path) {
@@ -32,18 +42,44 @@ class Files {
     /** Names in a folder, each once. */
     entries(path) {
         const name = Files.plain(path), begin = name ? `${name}/` : '';
-        return [...new Set(this.list.filter(each => each.name.startsWith(begin))
-            .map(each => each.name.slice(begin.length).split('/')[0]))];
+        if (!this.folders.has(name))
+            this.folders.set(name, [...new Set(this.list.filter(each => each.name.startsWith(begin))
+                .map(each => each.name.slice(begin.length).split('/')[0]))]);
+        return this.folders.get(name);
     }
 
     size(i) {
         return this.list[i].bytes?.byteLength ?? this.list[i].file.size;
     }
 
+    /** A browser takes a millisecond for each reading: so more is read than is asked for, of a
+     * small file all, as the next reading mostly goes on there. */
     read(i, at, size) {
         const {bytes, file} = this.list[i];
-        return bytes ? new Uint8Array(bytes, at, size)
-            : new Uint8Array(this.reader.readAsArrayBuffer(file.slice(at, at + size)));
+        if (bytes)
+            return new Uint8Array(bytes, at, size);
+        let last = this.ahead.get(i);
+        if (!last || at < last.at || at + size > last.at + last.bytes.byteLength) {
+            const small = file.size <= WHOLE, from = small ? 0 : at;
+            last = {at: from, bytes: this.reader.readAsArrayBuffer(
+                file.slice(from, small ? file.size : at + Math.max(size, AHEAD)))};
+            this.keep(i, last);
+        }
+        return new Uint8Array(last.bytes, at - last.at, size);
+    }
+
+    keep(i, read) {
+        const drop = which => {
+            this.room += this.ahead.get(which)?.bytes.byteLength ?? 0;
+            this.ahead.delete(which);
+        };
+        drop(i);
+        if (read.bytes.byteLength > WHOLE)
+            return;
+        this.ahead.set(i, read);
+        this.room -= read.bytes.byteLength;
+        while (this.room < 0)
+            drop(this.ahead.keys().next().value);
     }
 }
 
@@ -151,8 +187,8 @@ function shared(list) {
 
 /** The module with a memory, as `exports`. */
 function instance(module, memory, list) {
-    const of = {memory};
-    const {env, wasi_snapshot_preview1: wasi} = host(of, new Files(list));
+    const of = {memory, files: new Files(list)};
+    const {env, wasi_snapshot_preview1: wasi} = host(of, of.files);
     const imports = {env: {}, wasi_snapshot_preview1: {}};
     for (const {module: from, name, kind} of WebAssembly.Module.imports(module))
         imports[from][name] = kind === 'memory' ? memory : (from === 'env' ? env : wasi)[name];
@@ -197,6 +233,7 @@ async function begin(wasm, list, threads = 1, share = null) {
             const good = of.exports.engine_open(a, b);
             of.exports.engine_leave(a);
             of.exports.engine_leave(b);
+            of.files.forget();
             return good;
         },
         hear(text) {
