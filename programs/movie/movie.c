@@ -61,10 +61,6 @@ int movie_check(const options *opts) {
     return done == CONTINUE ? check_settings(opts) : done;
 }
 
-static bool needs_encoder(const movie *s) {
-    return s->place.streams || (s->place.format && s->place.format->arguments);
-}
-
 /* --- the beginning -------------------------------------------------------- */
 
 int movie_open(const options *opts, shot_list *list, movie **out) {
@@ -97,7 +93,7 @@ int movie_open(const options *opts, shot_list *list, movie **out) {
      * it is black. Its frames are kept as the encoder gets them. */
     snow_image_options_init(&s->form);
     paint_background(opts, NULL, &s->form);
-    s->form.flatten |= needs_encoder(s);
+    s->form.flatten |= place_needs_encoder(&s->place);
     s->form.bits = options_bits(opts);
     s->form.overwrite = true; /* of unfinished files */
     *out = s;
@@ -188,13 +184,6 @@ static int claim_output(movie *s) {
                                      strerror(number), place_remedy(number));
 }
 
-static int open_stream(movie *s) {
-    s->encoder.pipe = dup(STDOUT_FILENO);
-    s->encoding = s->encoder.pipe >= 0;
-    return s->encoding ? CONTINUE
-                       : fail_output("standard output: %s", strerror(errno));
-}
-
 /* Prepares the frames' folder and the record; removes leftovers. */
 static int begin_files(movie *s) {
     s->made_folder = s->place.format && !is_there(s->place.folder);
@@ -212,12 +201,20 @@ static int begin_files(movie *s) {
 static int begin_parts(movie *s) {
     const frame_sink sink = {s, movie_frame_prepare, movie_frame_commit,
                              movie_frame_release};
-    int done = s->place.streams ? open_stream(s) : begin_files(s);
+    int done = CONTINUE;
+    if (s->place.streams) {
+        s->encoder.pipe = dup(STDOUT_FILENO);
+        s->encoding = s->encoder.pipe >= 0;
+        if (!s->encoding)
+            return fail_output("standard output: %s", strerror(errno));
+    } else
+        done = begin_files(s);
     if (done != CONTINUE)
         return done;
-    if (!s->encoding && needs_encoder(s) && encoder_is_there())
+    if (!s->encoding && place_needs_encoder(&s->place) && encoder_is_there())
         done = start_encoder(s);
-    else if (!s->encoding && needs_encoder(s) && s->opts->verbosity >= 0)
+    else if (!s->encoding && place_needs_encoder(&s->place) &&
+             s->opts->verbosity >= 0)
         say("note: %s: ffmpeg was not found on the PATH; only frames are made, "
             "in %s",
             s->place.output, s->place.folder);
@@ -420,7 +417,8 @@ static int finish_movie(movie *s, int done) {
         done = report_queue(s, status);
     if (done == CONTINUE && s->encoding && !s->place.streams)
         done = finish_encoder(s);
-    else if (done == CONTINUE && s->place.format && !needs_encoder(s))
+    else if (done == CONTINUE && s->place.format &&
+             !place_needs_encoder(&s->place))
         done = join_movie(s);
     else if (done == CONTINUE && s->place.format)
         done = fail_output(

@@ -26,6 +26,11 @@ int place_read(const char *output, movie_place *out);
 int place_check(snow_context *context, const movie_place *place,
                 const options *opts);
 
+/* Returns whether frames go as bytes to ffmpeg, or to what reads the pipe. */
+static inline bool place_needs_encoder(const movie_place *place) {
+    return place->streams || (place->format && place->format->arguments);
+}
+
 /* A frame's final name, and its name until it is complete; `size` bytes suffice
  * for both after place_check succeeded. */
 bool place_frame(const movie_place *place, int64_t index, char *out,

@@ -27,8 +27,9 @@ static bool is_translucent(const snow_job *job) {
             most = fmax(most, t->opacities[i].opacity);
     }
     return job->settings.mode == SNOW_MODE_OVER &&
+           job->settings.threshold <= 0 &&
            1 - pow(1 - most, fine / job->settings.opacity_length) <=
-               TRANSLUCENT;
+               TRANSLUCENT + 1e-9;
 }
 
 static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
