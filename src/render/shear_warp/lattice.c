@@ -13,10 +13,6 @@
 #define APART_MOST 1.5
 #define DRAFT_APART_MOST (SNOW_VALUE_REACH_MOST / 2)
 #define WIDE 4
-/* From 1 to so many pixels a voxel quality high takes four samples a voxel of
- * translucent looks, and four resampled slices a slice, in place of 16 and 2.
- */
-#define TRANSLUCENT_MOST 2
 /* Doublings of the cells of the wider axis of voxels: more than a cell has
  * phases, and few enough for an int. */
 #define DOUBLINGS_MOST 16
@@ -40,11 +36,11 @@ static snow_status measure_density(snow_context *context,
 }
 
 static void choose_cells(const snow_volume_info *info, const snow_placement *p,
-                         snow_quality quality, double pixels, bool deep,
+                         snow_quality quality, double pixels,
                          snow_value_lattice *l) {
     int each = 1;
     if (quality == SNOW_QUALITY_HIGH)
-        each = pixels < 1 - 1e-6 || deep ? 2 : 4;
+        each = pixels < 1 - 1e-6 ? 2 : 4;
     if (quality == SNOW_QUALITY_NORMAL) {
         l->quincunx = pixels >= 1 - 1e-6 && pixels <= sqrt(2) + 1e-6;
         each = pixels > sqrt(2) + 1e-6 ? 2 : 1;
@@ -67,13 +63,13 @@ static void choose_cells(const snow_volume_info *info, const snow_placement *p,
 /* Resampled slices a slice, where a voxel is so many pixels wide. */
 static int resampled_per_slice(const snow_volume_info *info,
                                const snow_placement *p, snow_quality quality,
-                               double pixels, bool deep) {
+                               double pixels) {
     const bool draft = quality == SNOW_QUALITY_DRAFT;
     double fine = fmin(info->spacing[p->u_axis], info->spacing[p->v_axis]);
     double ratio = info->spacing[p->slice_axis] / fine / (1 + 1e-9);
     bool wide = quality == SNOW_QUALITY_HIGH ||
                 (quality == SNOW_QUALITY_NORMAL && pixels >= WIDE - 1e-6);
-    int count = p->slices > 1 ? (deep ? 4 : wide ? 2 : 1) : 1;
+    int count = wide && p->slices > 1 ? 2 : 1;
     while (ratio > count * (draft ? DRAFT_APART_MOST : APART_MOST) &&
            p->slices > 1 && count < PER_SLICE_MOST &&
            p->slices * count <= SLICES_MOST)
@@ -91,14 +87,14 @@ double snow_value_lattice_reach(const snow_volume_info *info,
         double ratio = info->spacing[p->slice_axis] / info->spacing[axes[n]];
         most = fmax(most, fmax(fabs(slope), ratio * (1 + 1e-6)));
     }
-    return most / resampled_per_slice(info, p, quality, 0, false);
+    return most / resampled_per_slice(info, p, quality, 0);
 }
 
 bool snow_value_fits(const snow_volume_info *info, const snow_placement *p,
                      const snow_settings *s) {
     if (p->perspective)
-        return snow_value_eye_fits(
-            p, resampled_per_slice(info, p, s->quality, 0, false));
+        return snow_value_eye_fits(p,
+                                   resampled_per_slice(info, p, s->quality, 0));
     return ceil(snow_value_lattice_reach(info, p, s->quality)) +
                (s->kernel == SNOW_KERNEL_BSPLINE) <=
            SNOW_VALUE_REACH_MOST;
@@ -239,12 +235,10 @@ static snow_status place_image(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_value_lattice_make(snow_context *context,
-                                    const snow_volume_info *info,
-                                    const snow_view *view,
-                                    const snow_placement *p,
-                                    snow_quality quality, bool translucent,
-                                    snow_value_lattice *out) {
+snow_status
+snow_value_lattice_make(snow_context *context, const snow_volume_info *info,
+                        const snow_view *view, const snow_placement *p,
+                        snow_quality quality, snow_value_lattice *out) {
     snow_value_lattice l = {.cells = {1, 1}};
     double pixels;
     if (p->slices > SLICES_MOST)
@@ -253,10 +247,8 @@ snow_status snow_value_lattice_make(snow_context *context,
                          "is %d; take a view along another axis",
                          (long long)p->slices, SLICES_MOST);
     SNOW_TRY(measure_density(context, info, view, p, &pixels));
-    const bool deep = translucent && quality == SNOW_QUALITY_HIGH &&
-                      pixels >= 1 - 1e-6 && pixels < TRANSLUCENT_MOST - 1e-6;
-    choose_cells(info, p, quality, pixels, deep, &l);
-    l.per_slice = resampled_per_slice(info, p, quality, pixels, deep);
+    choose_cells(info, p, quality, pixels, &l);
+    l.per_slice = resampled_per_slice(info, p, quality, pixels);
     l.resampled_count =
         p->slices == 1 ? 2 : (int)(p->slices - 1) * l.per_slice + 1;
     l.path = p->path / l.per_slice;

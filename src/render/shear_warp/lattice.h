@@ -37,15 +37,11 @@ typedef struct snow_value_lattice {
     int halvings; /* of the image, before */
 } snow_value_lattice;
 
-/* Of looks that hide little (`translucent`), quality high takes more resampled
- * slices and fewer samples.  Errors: SNOW_STATUS_BAD_USAGE (spacings or a view
- * that it cannot draw). */
-snow_status snow_value_lattice_make(snow_context *context,
-                                    const snow_volume_info *info,
-                                    const snow_view *view,
-                                    const snow_placement *placement,
-                                    snow_quality quality, bool translucent,
-                                    snow_value_lattice *out);
+/* Errors: SNOW_STATUS_BAD_USAGE (spacings or a view that it cannot draw). */
+snow_status
+snow_value_lattice_make(snow_context *context, const snow_volume_info *info,
+                        const snow_view *view, const snow_placement *placement,
+                        snow_quality quality, snow_value_lattice *out);
 
 /* The most voxels that a ray moves aside from one resampled slice to the next,
  * whatever the size of a voxel in the picture; more than SNOW_VALUE_REACH_MOST

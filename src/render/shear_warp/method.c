@@ -2,35 +2,6 @@
  * picture's parts, of which those of a file come one after another, share a
  * lattice, a table and an image. */
 #include "render/picture.h"
-#include "transfer/transfer.h"
-
-#include <math.h>
-
-/* The largest opacity of a voxel in a picture whose resampled slices matter
- * more than its samples. */
-#define TRANSLUCENT 0.3
-
-/* Returns whether all looks of a picture are such.  Labels have sharp edges,
- * and logarithms steep ones. */
-static bool is_translucent(const snow_job *job) {
-    const double *spacing = job->volume->info.spacing;
-    const double fine = fmin(spacing[0], fmin(spacing[1], spacing[2]));
-    double most = 0;
-    for (int n = 0; n <= job->layer_count; n++) {
-        const snow_layer *layer = n ? &job->layers[n - 1] : NULL;
-        const snow_volume *volume = layer ? layer->volume : job->volume;
-        const snow_transfer *t = layer ? layer->transfer : job->transfer;
-        if (t->log || t->linear > 0 ||
-            snow_transfer_has_labels(t, &volume->info))
-            return false;
-        for (size_t i = 0; i < t->opacity_count; i++)
-            most = fmax(most, t->opacities[i].opacity);
-    }
-    return job->settings.mode == SNOW_MODE_OVER &&
-           job->settings.threshold <= 0 &&
-           1 - pow(1 - most, fine / job->settings.opacity_length) <=
-               TRANSLUCENT + 1e-9;
-}
 
 static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
     bool surface = job->settings.mode == SNOW_MODE_ISO;
@@ -49,7 +20,6 @@ static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
         .channels = job->channels,
         .layers = job->layers,
         .layer_count = job->layer_count,
-        .translucent = is_translucent(job),
         .shared = p->combiner != &snow_combine_alone,
         .aside = p->aside,
         .resumes = p->local.image.layers > 0,

@@ -161,7 +161,7 @@ snow_status snow_value_begin_values(snow_value_path *path,
     snow_volume_whole(params->volume, &whole);
     SNOW_TRY(snow_value_lattice_make(
         path->context, &whole, params->view, params->placement,
-        params->settings->quality, params->translucent, &path->lattice));
+        params->settings->quality, &path->lattice));
     path->reference = params->settings->opacity_length;
     path->longest = 0;
     for (int n = 0; n < 3; n++)

@@ -36,7 +36,6 @@ typedef struct snow_value_params {
     int channels;   /* 2 or 4 */
     const snow_layer *layers; /* other volumes, of the same grid, or files */
     int layer_count;
-    bool translucent; /* no look hides much in a voxel */
     bool shared;  /* with other ranks: the image's size depends on the picture
                      alone, and a deterministic one has a layer for each node */
     bool aside;   /* the image of the picture before is still needed */
