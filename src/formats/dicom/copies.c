@@ -39,12 +39,11 @@ static bool are_alike(const dicom_frame *a, const dicom_frame *b) {
 }
 
 snow_status snow_dicom_is_copy(dicom_reader *reader, snow_seekable *given,
-                               dicom_image *image, dicom_image *other,
-                               const dicom_frame *known, bool *same) {
-    dicom_frame frame;
+                               dicom_image *image, const dicom_frame *frame,
+                               dicom_image *other, const dicom_frame *known,
+                               bool *same) {
     dicom_reader again;
-    snow_dicom_read_frame(reader, image, 0, &frame);
-    *same = are_alike(&frame, known);
+    *same = are_alike(frame, known);
     if (!*same || reader->cut || known->lost)
         return SNOW_STATUS_OK;
     if (!other->sum) {

@@ -412,8 +412,8 @@ uint64_t snow_dicom_frame_bytes(const dicom_image *image);
 bool snow_dicom_is_ybr(const dicom_image *image);
 
 /* Reads a frame's words in the machine's byte order into `out`, of the size
- * above; colours are red, green, blue. Errors: SNOW_STATUS_BAD_INPUT (truncated, damaged, or an unknown
- * compression), SNOW_STATUS_NO_MEMORY. */
+ * above; colours are red, green, blue. Errors: SNOW_STATUS_BAD_INPUT
+ * (truncated, damaged, or an unknown compression), SNOW_STATUS_NO_MEMORY. */
 snow_status snow_dicom_read_words(dicom_reader *reader,
                                   const dicom_image *image, int64_t number,
                                   void *out, dicom_words *words);
@@ -503,10 +503,12 @@ snow_status snow_dicom_set_unit(const dicom_input *input,
 /* --- copies.c ------------------------------------------------------------- */
 
 /* Whether the image of an open reader is that of another with its SOP instance
- * UID, whose first frame is known; `given`: the store of one without a path. */
+ * UID; the first frames of both are known.  `given`: the store of one without a
+ * path. */
 snow_status snow_dicom_is_copy(dicom_reader *reader, snow_seekable *given,
-                               dicom_image *image, dicom_image *other,
-                               const dicom_frame *known, bool *same);
+                               dicom_image *image, const dicom_frame *frame,
+                               dicom_image *other, const dicom_frame *known,
+                               bool *same);
 
 /* --- segments.c ----------------------------------------------------------- */
 

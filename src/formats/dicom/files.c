@@ -80,14 +80,17 @@ static void free_collection(collection *c) {
 /* Whether a file before has the same image; UIDs are not always unique. */
 static snow_status find_copy(collection *c, dicom_reader *reader,
                              dicom_image *image, bool *found) {
+    dicom_frame frame;
     bool twin = false;
     *found = false;
     for (size_t i = 0; i < c->image_count && *image->instance && !*found; i++) {
         dicom_image *other = c->images[i];
         if (strcmp(other->instance, image->instance) != 0)
             continue;
+        if (!twin)
+            snow_dicom_read_frame(reader, image, 0, &frame);
         twin = true;
-        SNOW_TRY(snow_dicom_is_copy(reader, c->store, image, other,
+        SNOW_TRY(snow_dicom_is_copy(reader, c->store, image, &frame, other,
                                     &c->frames[other->first], found));
     }
     c->copies += *found;
