@@ -360,7 +360,30 @@ def bov():
     return span(FIELD)
 
 
-CODES = {"plt00000": amrex, "run_hdf5_plt_cnt_0000": flash,
+# --- chemistry ---
+
+
+def lines(values, each):
+    return [" ".join("%.12E" % v for v in values[i:i + each])
+            for i in range(0, len(values), each)]
+
+
+def cube():
+    """Bohr, x slowest."""
+    text("density.cube", "density", "of one atom", "1 0 0 0", f"{NX} 0.5 0 0",
+         f"{NY} 0 0.5 0", f"{NZ} 0 0 0.5", "1 1.0 3.0 2.0 2.5",
+         *lines(FIELD.T.ravel(), 6))
+    return span(FIELD)
+
+
+def vasp():
+    """Charges times the volume of the cell, of 6 x 5 x 4 angstrom; x fastest."""
+    text("CHGCAR", "one atom", "1.0", "6 0 0", "0 5 0", "0 0 4", "H", "1", "Direct",
+         "0.5 0.4 0.6", "", f"{NX} {NY} {NZ}", *lines(FIELD.ravel() * 120, 5))
+    return span(FIELD, (NX + 1, NY + 1, NZ + 1))
+
+
+CODES = {"density.cube": cube, "CHGCAR": vasp, "plt00000": amrex, "run_hdf5_plt_cnt_0000": flash,
          "blast.prim.00000.athdf": athena, "amr.vtkhdf": vtkhdf,
          "wrfout_d01_2005-08-28_00:00:00": wrf, "era5.nc": era5, "era5.zarr": era5_zarr,
          "ORCA025_grid_T.nc": nemo, "ocean_his_0001.nc": roms, "pop.h.0001-01.nc": pop,
