@@ -331,25 +331,27 @@ int steps_find(const options *opts, step_files *out) {
     return done;
 }
 
-/* How many steps a file has. */
-static int count_steps(const options *opts, snow_context *context,
-                       const char *path, int64_t *out) {
+/* How many steps a file has, without notes: they come when it is read. */
+static int count_steps(const options *opts, const char *path, int64_t *out) {
+    snow_context *context = NULL;
     snow_volume_options data = data_options(opts);
     snow_volume_info info = {.size = sizeof info};
     data.time = 0;
     data.each_time = true;
     memset(data.crop, 0, sizeof data.crop);
-    int done =
-        check_status(context, snow_volume_inspect(context, path, &data, &info));
+    snow_status status = snow_context_new(NULL, &context);
+    if (status == SNOW_STATUS_OK)
+        status = snow_volume_inspect(context, path, &data, &info);
+    int done = check_status(context, status);
+    snow_context_free(context);
     *out = info.times;
     return done;
 }
 
 /* Adds the steps of a file. */
-static int add_steps(const options *opts, snow_context *context,
-                     const char *path, step_files *out) {
+static int add_steps(const options *opts, const char *path, step_files *out) {
     int64_t steps = 0;
-    int done = count_steps(opts, context, path, &steps);
+    int done = count_steps(opts, path, &steps);
     int64_t *times =
         realloc(out->times, (size_t)(out->count + steps) * sizeof *times);
     if (!times && done == CONTINUE)
@@ -362,18 +364,18 @@ static int add_steps(const options *opts, snow_context *context,
     return done;
 }
 
-int steps_expand(const options *opts, snow_context *context,
-                 step_files *files) {
+int steps_expand(const options *opts, step_files *files) {
     step_files all = {.gaps = files->gaps};
     int64_t ends[2] = {1, 1};
-    int done = count_steps(opts, context, files->paths[0], &ends[0]);
-    if (done == CONTINUE && files->count > 1)
-        done = count_steps(opts, context, files->paths[files->count - 1],
-                           &ends[1]);
-    if (done != CONTINUE || files->count == 1 || (ends[0] < 2 && ends[1] < 2))
+    if (files->count < 2)
+        return CONTINUE;
+    int done = count_steps(opts, files->paths[0], &ends[0]);
+    if (done == CONTINUE)
+        done = count_steps(opts, files->paths[files->count - 1], &ends[1]);
+    if (done != CONTINUE || (ends[0] < 2 && ends[1] < 2))
         return done;
     for (int64_t i = 0; i < files->count && done == CONTINUE; i++)
-        done = add_steps(opts, context, files->paths[i], &all);
+        done = add_steps(opts, files->paths[i], &all);
     steps_free(files);
     *files = all;
     return done;

@@ -29,7 +29,7 @@ void steps_free(step_files *files);
 
 /* Where files hold several steps, as the first or the last one does, each of
  * these becomes an entry.  Returns CONTINUE or an exit code. */
-int steps_expand(const options *opts, snow_context *context, step_files *files);
+int steps_expand(const options *opts, step_files *files);
 
 /* Makes one shot for each file.  Files give one shot for each time step in
  * them, unless --time selects one of each; they are then inspected.  Returns

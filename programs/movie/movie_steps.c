@@ -84,8 +84,7 @@ static int take_range(const options *opts, int64_t *from, int64_t *count) {
 int steps_list(step_files *files, shot_renderer *shots, shot_list *out) {
     const options *opts = shots->state.opts;
     const bool given = options_given(opts, "time") && !opts->time_range;
-    int done =
-        given ? CONTINUE : steps_expand(opts, shots->state.context, files);
+    int done = given ? CONTINUE : steps_expand(opts, files);
     if (done != CONTINUE)
         return done;
     movie_shot first = {files->paths[0],

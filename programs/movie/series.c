@@ -192,7 +192,7 @@ static int take_input(options *opts, const char *format, ...) {
 
 static int choose_file(options *opts, step_files *files,
                        snow_context *context) {
-    int done = steps_expand(opts, context, files);
+    int done = steps_expand(opts, files);
     step_times times = {.context = context,
                         .opts = opts,
                         .files = files,

@@ -272,7 +272,8 @@ static bool is_mask(const snow_histogram *histogram, const snow_look *look,
 static bool is_flat(const snow_volume *volume) {
     snow_extent whole;
     snow_volume_find_extent(volume, &whole);
-    return whole.dims[0] == 1 || whole.dims[1] == 1 || whole.dims[2] == 1;
+    return (whole.dims[0] == 1) + (whole.dims[1] == 1) + (whole.dims[2] == 1) ==
+           1;
 }
 
 /* A file's labels are known after a pass. */
