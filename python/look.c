@@ -2,6 +2,7 @@
 #include "core.h"
 #include "picture/light.h"
 
+#include <snowglass/channels.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -186,8 +187,8 @@ PyObject *volume_ground(PyObject *self, PyObject *args) {
             volumes[c] = ((volume_object *)parts[c])->volume;
         const int64_t middle = snow_volume_get_info(o->volume)->dims[2] / 2;
         CALL(o->context, status,
-             light_find_ground(volumes, (const double(*)[2])(void *)levels,
-                               middle, &white));
+             snow_channels_ground(volumes, (const double(*)[2])(void *)levels,
+                                  middle, &white));
         context_leave(o->context, status);
     }
     free(levels);

@@ -9,31 +9,24 @@
 #include <snowglass/ranks.h>
 
 typedef struct snow_insitu snow_insitu;
-
 /* Collective. A movie of one field over the caller's communicator, freed after
  * it; freeing is collective where the communicator's is. */
 SNOW_API snow_status snow_insitu_new(snow_comm *comm, snow_insitu **out);
 SNOW_API void snow_insitu_free(snow_insitu *insitu);
-
 /* Its communicator; makes it free that, and its context, when it is freed. */
 SNOW_API snow_comm *snow_insitu_comm(const snow_insitu *insitu);
 SNOW_API void snow_insitu_own_comm(snow_insitu *insitu, bool with_context);
-
 /* The message of the last call that failed, or ""; a failure of the caller's,
  * as if a setter's, with the context's message. */
 SNOW_API const char *snow_insitu_message(const snow_insitu *insitu);
-SNOW_API snow_status snow_insitu_set_error(
-    snow_insitu *insitu, snow_status status);
+SNOW_API snow_status snow_insitu_set_error(snow_insitu *, snow_status);
 /* Of a recipe: collective calls fail until one is OK. What all ranks call
  * before they take voxels, with NULL at the end; its failure is a warning. */
-SNOW_API snow_status snow_insitu_set_recipe_status(
-    snow_insitu *insitu, snow_status status);
+SNOW_API snow_status snow_insitu_set_recipe_status(snow_insitu *, snow_status);
 typedef snow_status snow_refresh_fn(snow_insitu *insitu, void *user);
-SNOW_API void snow_insitu_set_refresh(
-    snow_insitu *insitu, snow_refresh_fn *refresh, void *user);
+SNOW_API void snow_insitu_set_refresh(snow_insitu *, snow_refresh_fn *, void *);
 /* Receives warnings (pictures left out or lowered, and why), on rank 0. */
-SNOW_API void snow_insitu_set_warning(
-    snow_insitu *insitu, snow_warning_fn *warning, void *user);
+SNOW_API void snow_insitu_set_warning(snow_insitu *, snow_warning_fn *, void *);
 /* Alike on all ranks: voxels of the global grid along x, y, z, world place of
  * voxel 0 (NULL: 0), distance of neighbours (NULL: 1). Forgets all bricks. */
 SNOW_API snow_status snow_insitu_set_grid(snow_insitu *insitu,
@@ -113,8 +106,7 @@ SNOW_RECORD(snow_insitu_settings);
 SNOW_API snow_status snow_insitu_set(
     snow_insitu *insitu, const snow_insitu_settings *settings);
 /* Collective. Whether rank 0 can write there (NULL: where it is told to). */
-SNOW_API snow_status snow_insitu_try_output(
-    snow_insitu *insitu, const char *output);
+SNOW_API snow_status snow_insitu_try_output(snow_insitu *, const char *output);
 /* The time of the next step, which annotations may have. */
 SNOW_API snow_status snow_insitu_set_time(
     snow_insitu *insitu, double time, const char *unit);
@@ -125,7 +117,6 @@ SNOW_API snow_status snow_insitu_update(snow_insitu *insitu);
 SNOW_API snow_status snow_insitu_render(snow_insitu *, snow_image **image);
 /* Collective. Updates, renders, writes on rank 0; means and sums as colours. */
 SNOW_API snow_status snow_insitu_step(snow_insitu *insitu, int64_t step);
-
 typedef struct snow_spread { /* over the ranks */
     double least, mean, most;
 } snow_spread;
@@ -152,7 +143,6 @@ typedef struct snow_insitu_stats {
     snow_degradation lowering; /* of the last picture */
 } snow_insitu_stats;
 SNOW_RECORD(snow_insitu_stats);
-SNOW_API snow_status snow_insitu_get_stats(
-    snow_insitu *insitu, snow_insitu_stats *out);
+SNOW_API snow_status snow_insitu_get_stats(snow_insitu *, snow_insitu_stats *);
 
 #endif

@@ -11,7 +11,6 @@ typedef struct snow_look_file snow_look_file;
 /* The most points of a kind, and bytes of a file. */
 #define SNOW_LOOK_POINTS_MAX 65536
 #define SNOW_LOOK_BYTES_MAX (16 << 20)
-
 /* "FILE#NAME" names one of several looks (else the first is taken). Errors:
  * BAD_INPUT (no file, no look, a bad one: the message says where). */
 SNOW_API snow_status snow_look_load(

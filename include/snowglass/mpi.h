@@ -17,14 +17,12 @@ SNOW_API snow_status snow_comm_new_mpi(
     snow_context *context, MPI_Comm group, snow_comm **out);
 SNOW_API snow_status snow_comm_new_mpi_fortran(
     snow_context *context, MPI_Fint group, snow_comm **out);
-
 /* Collective over `group`: pictures of a running simulation over such a
  * communicator, freed with them (snow_insitu_free, collective, before
  * MPI_Finalize). `context` NULL, and the one for Fortran: a context of their
  * own. Errors: as above; the message is in the context. */
 SNOW_API snow_status snow_insitu_new_mpi(
     snow_context *context, MPI_Comm group, snow_insitu **out);
-SNOW_API snow_status snow_insitu_new_mpi_fortran(
-    MPI_Fint group, snow_insitu **out);
+SNOW_API snow_status snow_insitu_new_mpi_fortran(MPI_Fint, snow_insitu **out);
 
 #endif

@@ -163,8 +163,8 @@ SNOW_API snow_status snow_view_fit(struct snow_comm *, const snow_volume *,
     const snow_transfer *transfer, const snow_settings *settings,
     const double *azimuths, size_t count, snow_view *view);
 
-/* The tool's first picture of a file or phantom:NAME, to the bit (of several
- * channels the first); PNG, WebP and JPEG without options have its background
+/* The tool's first picture of a file or phantom:NAME, to the bit, its channels
+ * mixed (channels.h); PNG, WebP and JPEG without options have its background
  * and letters. View, settings may be NULL. */
 SNOW_API snow_status snow_render_file(snow_context *context, const char *path,
     const snow_view *view, const snow_settings *settings, snow_image **image);

@@ -1,7 +1,7 @@
 /* snowglass/snowglass.h - volumes to pictures, in one process.
  *
- * Not included: ranks and comm (many processors), insitu (running simulations),
- * mpi, extend, look_file and recipe (files, in libsnowglass-recipe).
+ * Not included: ranks and comm (many processors), channels (mixed), insitu
+ * (simulations), mpi, extend, look_file and recipe (in libsnowglass-recipe).
  *
  *   snow_context *context = NULL;
  *   snow_image *image = NULL;

@@ -7,7 +7,7 @@
 #include "run/memory.h"
 #include "run/start.h"
 
-#include <math.h>
+#include <snowglass/channels.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -64,22 +64,11 @@ static void note_directions(const options *opts) {
  * is, so that it is the same for slabs, for ranks and for what a viewer shows.
  */
 
-/* One slice, or up to five of 16 times as many rows and columns: a picture, as
- * the automatic look has it. */
-static bool is_picture(const snow_volume_info *info) {
-    const int64_t *n = info->dims;
-    for (int i = 0; i < 3; i++)
-        if (n[i] <= 5 && n[(i + 1) % 3] >= (n[i] > 1 ? 16 * n[i] : 2) &&
-            n[(i + 2) % 3] >= (n[i] > 1 ? 16 * n[i] : 2))
-            return true;
-    return false;
-}
-
 /* Red, green and blue of the voxels alone, as parts of a volume that has an
  * inside; opacities that are asked for stay as they are. */
 static bool may_have_ground(const options *opts, const snow_volume_info *info,
                             const channel_list *list) {
-    bool own = list->count == 3 && !is_picture(info) &&
+    bool own = list->count == 3 && !snow_channels_are_flat(info) &&
                !opts->opacities.count && strcmp(opts->mode, "over") == 0;
     int64_t parts = 0;
     for (int n = 0; n < list->count && own; n++) {
@@ -108,9 +97,9 @@ static double look_at_middle(const options *opts,
                SNOW_STATUS_OK;
     }
     if (fine)
-        fine = light_find_ground((const snow_volume *const *)parts,
-                                 (const double(*)[2])levels, 0,
-                                 &white) == SNOW_STATUS_OK;
+        fine = snow_channels_ground((const snow_volume *const *)parts,
+                                    (const double(*)[2])levels, 0,
+                                    &white) == SNOW_STATUS_OK;
     for (int c = 0; c < 3; c++)
         snow_volume_close(parts[c]);
     snow_context_free(context);
@@ -192,51 +181,6 @@ int channels_choose(const options *opts, const snow_volume_info *info,
 
 /* --- looks ---------------------------------------------------------------- */
 
-/* The least brightness in mode over, where what is dim is transparent. */
-#define DIM 0.5
-
-typedef struct channel_colors {
-    snow_color_point colors[2];
-    snow_opacity_point opacities[4];
-} channel_colors;
-
-/* Colours and, where no histogram is asked, opacities: those of a projection,
- * and of voxels that are colours: faint enough that the colour is not that of
- * the border, where values are between; but a picture is what it is, and on a
- * white ground the darkest is as opaque. */
-static void take_color(const options *opts, const snow_volume_info *info,
-                       const snow_channel *of, const channel_pick *pick,
-                       channel_colors *scratch, snow_look *look) {
-    static const snow_opacity_point own[3][4] = {
-        {{0, 0}, {0.04, 0}, {0.15, 0.25}, {1, 0.3}},
-        {{0, 1}, {0.04, 1}, {0.15, 1}, {1, 1}},
-        {{0, 0.6}, {0.04, 0.6}, {0.15, 0.6}, {1, 0.6}}};
-    const int ground = is_picture(info) ? 1 : pick->white > 0 ? 2 : 0;
-    const bool flat = mode_is_projection(opts->mode);
-    const double dim = flat || of->own ? 0 : DIM;
-    double rgb[3];
-    /* A colour, or a map from black to one. */
-    if (channels_rgb(pick->color, rgb) ||
-        light_of_colormap((size_t)snow_colormap_from_name(pick->color), rgb)) {
-        scratch->colors[0] =
-            (snow_color_point){0, dim * rgb[0], dim * rgb[1], dim * rgb[2]};
-        scratch->colors[1] = (snow_color_point){1, rgb[0], rgb[1], rgb[2]};
-        look->colors = scratch->colors;
-        look->color_count = 2;
-        look->domain = SNOW_DOMAIN_RANGE;
-    } else {
-        look->colormap = pick->color;
-        look->preset = flat ? "linear" : NULL;
-        return;
-    }
-    memcpy(scratch->opacities, own[ground], sizeof own[0]);
-    if (flat)
-        scratch->opacities[1] = (snow_opacity_point){1, 1};
-    if (flat || of->own)
-        look->opacities = scratch->opacities;
-    look->opacity_count = flat ? 2 : of->own ? 4 : 0;
-}
-
 /* Of the list, of all, of the file, or to be chosen. */
 static range_value range_of(const options *opts, const snow_channel *of,
                             const channel_pick *pick) {
@@ -253,33 +197,6 @@ static range_value range_of(const options *opts, const snow_channel *of,
                          0, 0};
 }
 
-/* One value everywhere is nothing to see: it would hide the other channels.
- * Its range begins there instead of ending there. */
-static snow_status hide_constant(snow_comm *comm, const snow_volume *volume,
-                                 snow_look *look, snow_transfer **made) {
-    const snow_look automatic = {.size = sizeof automatic};
-    snow_transfer *seen = NULL;
-    double low, high;
-    snow_transfer_domain(*made, &low, &high);
-    if (low < 0 || low > 0 || look->range == SNOW_RANGE_FULL ||
-        look->range == SNOW_RANGE_VALUES ||
-        look->range == SNOW_RANGE_PERCENTILES)
-        return SNOW_STATUS_OK;
-    snow_status status =
-        snow_ranks_new_transfer(comm, volume, &automatic, &seen);
-    if (status == SNOW_STATUS_OK &&
-        strstr(snow_transfer_description(seen), "one value only")) {
-        snow_transfer_free(*made);
-        *made = NULL;
-        look->range = SNOW_RANGE_VALUES;
-        look->low = high;
-        look->high = high + fmax(1, high);
-        status = snow_ranks_new_transfer(comm, volume, look, made);
-    }
-    snow_transfer_free(seen);
-    return status;
-}
-
 snow_status channels_look(snow_comm *comm, const options *opts,
                           const snow_volume_info *info, channel_pick *pick,
                           const snow_volume *volume, snow_transfer **out) {
@@ -288,23 +205,28 @@ snow_status channels_look(snow_comm *comm, const options *opts,
                                  ? &info->channel[pick->index]
                                  : &unknown;
     const range_value range = range_of(opts, of, pick);
-    channel_colors scratch;
+    const bool flat = mode_is_projection(opts->mode);
+    double rgb[3];
+    /* A colour, or a map from black to one. */
+    const bool plain =
+        channels_rgb(pick->color, rgb) ||
+        light_of_colormap((size_t)snow_colormap_from_name(pick->color), rgb);
     snow_look look = {.size = sizeof look,
+                      .colormap = plain ? NULL : pick->color,
                       .range = range.kind,
                       .low = range.low,
                       .high = range.high,
                       .log = opts->scale.log,
                       .symlog = opts->scale.symlog,
                       .white = pick->white};
-    take_color(opts, info, of, pick, &scratch, &look);
     if (opts->gradient_opacities.count) {
         look.gradient_opacities = opts->gradient_opacities.points;
         look.gradient_opacity_count = opts->gradient_opacities.count;
     }
     snow_transfer *made = NULL;
-    snow_status status = snow_ranks_new_transfer(comm, volume, &look, &made);
-    if (status == SNOW_STATUS_OK)
-        status = hide_constant(comm, volume, &look, &made);
+    snow_status status =
+        snow_channels_look(comm, volume, info, pick->index, flat,
+                           plain ? rgb : NULL, &look, &made);
     if (status == SNOW_STATUS_OK &&
         pick->range.kind != SNOW_RANGE_PERCENTILES) {
         pick->range.kind = SNOW_RANGE_VALUES;

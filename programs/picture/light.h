@@ -15,14 +15,6 @@ void light_limit(snow_image *sum);
 /* Red, green and blue of a map from black to one colour; false: of another. */
 bool light_of_colormap(size_t index, double rgb[3]);
 
-/* Whether voxels of red, green and blue lie on a white ground, as those of a
- * bright field: most at the border of slice `index` across z are bright in all
- * three, over the levels of each.  *white is then the share of these levels
- * from which on they are ground, else 0.  Errors: of memory. */
-snow_status light_find_ground(const snow_volume *const parts[3],
-                              const double levels[3][2], int64_t index,
-                              double *white);
-
 /* What opacities of an overlay are multiplied by in a slice: those of sheets
  * say little of a single one.  `asked`: some are; a factor (below 0: none) is
  * the most that it covers. */

@@ -2,34 +2,86 @@
  * of the tool without options.  It joins the readers of formats/ and the
  * renderer, neither of which knows the other. */
 #include "base/base.h"
+#include "files/channel_mix.h"
 #include "image/image.h"
+#include "io/source.h"
 
 #include <snowglass/snowglass.h>
 
 /* What a picture is made of, in the order in which it is made. */
 typedef struct request {
     snow_context *context;
-    snow_volume *volume;
-    snow_transfer *transfer;
+    const char *path;
+    channel_mix mix;
     snow_settings settings;
     snow_view view;
     snow_image *image;
 } request;
 
-/* Behind shaded objects, whose dark sides stand out from it. */
-#define DARK (20 / 255.0)
+static const snow_volume_info *info_of(const request *r) {
+    return snow_volume_get_info(r->mix.volumes[0]);
+}
 
 static bool has_surfaces(const request *r) {
     return r->settings.mode == SNOW_MODE_OVER ||
            r->settings.mode == SNOW_MODE_ISO;
 }
 
+/* Number n of those that are mixed; of none the file's first channel. */
+static snow_status open_channel(request *r, int n) {
+    const snow_volume_options options = {
+        .size = sizeof options,
+        .channel = r->mix.count ? r->mix.channel[n] : 0,
+        .channel_given = r->mix.count > 0,
+        .each_channel = true};
+    return snow_volume_open(r->context, r->path, &options, &r->mix.volumes[n]);
+}
+
+/* What a picture leaves out. */
+static void note_others(const request *r) {
+    const snow_volume_info *info = info_of(r);
+    if (info->channels > 1 && !r->mix.count)
+        snow_notify(r->context,
+                    "channel 0 of %lld (counted from 0) is used; --channel N "
+                    "selects another",
+                    (long long)info->channels);
+    else if (r->mix.count && info->channels > SNOW_CHANNELS_MAX)
+        snow_notify(r->context,
+                    "the file has %lld channels, of which the first %d are "
+                    "taken",
+                    (long long)info->channels, SNOW_CHANNELS_MAX);
+    for (int64_t n = 0; n < info->channels && info->light && r->mix.count; n++)
+        if (n < 64 && !(info->light >> n & 1))
+            snow_notify(r->context,
+                        "channel %lld is of transmitted light and is left out",
+                        (long long)n);
+}
+
+/* The channels that are drawn, of a file that can be read again; the first is
+ * open, and opened anew where it is another. */
+static snow_status open_all(request *r) {
+    channel_mix *mix = &r->mix;
+    if (snow_source_is_stream(r->path))
+        mix->count = 0;
+    note_others(r);
+    for (int n = 0; n < mix->count; n++) {
+        if (n == 0 && mix->channel[0] == 0)
+            continue;
+        snow_volume_close(mix->volumes[n]);
+        mix->volumes[n] = NULL;
+        SNOW_TRY(open_channel(r, n));
+    }
+    return SNOW_STATUS_OK;
+}
+
 /* From the histogram; of projections grey over the file's window, or all values
  * but a few far off, or above the noise. */
 static snow_status choose_look(request *r) {
-    const snow_volume_info *info = snow_volume_get_info(r->volume);
+    const snow_volume_info *info = info_of(r);
     snow_look look;
     snow_look_init(&look);
+    if (r->mix.count)
+        return snow_mix_look(&r->settings, &r->mix);
     if (!has_surfaces(r)) {
         const snow_mode mode = r->settings.mode;
         look.preset = "linear";
@@ -39,32 +91,36 @@ static snow_status choose_look(request *r) {
                          ? SNOW_RANGE_SIGNAL
                          : SNOW_RANGE_ROBUST;
     }
-    return snow_transfer_new_for_volume(r->volume, &look, &r->transfer);
+    return snow_transfer_new_for_volume(r->mix.volumes[0], &look,
+                                        &r->mix.looks[0]);
 }
 
 /* From where the volume is usually seen, so that what the look shows fills the
- * picture. */
+ * picture; all of several channels. */
 static snow_status choose_view(request *r) {
+    const snow_volume *volume = r->mix.volumes[0];
     snow_view_init(&r->view);
-    SNOW_TRY(snow_view_default(r->volume, &r->view));
-    return snow_view_fit(NULL, r->volume, r->transfer, &r->settings, NULL, 0,
-                         &r->view);
+    SNOW_TRY(snow_view_default(volume, &r->view));
+    return snow_view_fit(NULL, volume,
+                         r->mix.count > 1 ? NULL : r->mix.looks[0],
+                         &r->settings, NULL, 0, &r->view);
 }
 
 static snow_status draw(request *r) {
     snow_frame *frame = NULL;
     SNOW_TRY(snow_frame_new(r->context, &frame));
-    snow_status status = snow_frame_render(frame, r->volume, r->transfer,
-                                           &r->view, &r->settings, &r->image);
+    snow_status status =
+        snow_mix_draw(frame, &r->mix, &r->view, &r->settings, &r->image);
     snow_frame_free(frame);
     return status;
 }
 
-/* What files of levels show besides: a dark background, and a patient's
- * sides. */
+/* What files of levels show besides: the background, that of light black, and a
+ * patient's sides. */
 static snow_status dress(const request *r) {
-    const snow_volume_info *info = snow_volume_get_info(r->volume);
-    double ground[3] = {DARK, DARK, DARK};
+    const bool light = r->mix.count && !has_surfaces(r);
+    const snow_volume_info *info = info_of(r);
+    double ground[3];
     snow_overlay *letters = NULL;
     snow_status status = SNOW_STATUS_OK;
     if (info->medical)
@@ -72,21 +128,18 @@ static snow_status dress(const request *r) {
                                   &letters);
     if (letters)
         status = snow_overlay_orientation(letters, info, &r->view);
-    if (!has_surfaces(r))
-        snow_mode_background(r->settings.mode, r->transfer, ground);
+    snow_mode_background(r->settings.mode, light ? NULL : r->mix.looks[0],
+                         ground);
     snow_image_dress(r->image, ground, letters);
     return status;
 }
 
-static snow_status make(request *r, const char *path, const snow_view *view,
-                        const snow_settings *settings) {
-    SNOW_TRY(
-        SNOW_RECORD_READ(r->context, snow_settings, settings, &r->settings));
-    SNOW_TRY(snow_volume_open(r->context, path, NULL, &r->volume));
-    if (!settings)
-        r->settings.mode = snow_mode_for(snow_volume_get_info(r->volume));
+static snow_status make_picture(request *r, const snow_view *view,
+                                const snow_settings *settings) {
+    SNOW_TRY(open_all(r));
     SNOW_TRY(choose_look(r));
-    if (!settings && snow_transfer_is_unshaded(r->transfer))
+    if (!settings &&
+        (r->mix.count || snow_transfer_is_unshaded(r->mix.looks[0])))
         r->settings.shade = SNOW_SHADE_NONE;
     SNOW_TRY(view ? SNOW_RECORD_READ(r->context, snow_view, view, &r->view)
                   : choose_view(r));
@@ -94,17 +147,36 @@ static snow_status make(request *r, const char *path, const snow_view *view,
     return dress(r);
 }
 
+/* Where several channels need more memory than there is, of the first. */
+static snow_status make(request *r, const snow_view *view,
+                        const snow_settings *settings) {
+    SNOW_TRY(
+        SNOW_RECORD_READ(r->context, snow_settings, settings, &r->settings));
+    SNOW_TRY(open_channel(r, 0));
+    if (!settings)
+        r->settings.mode = snow_mode_for(info_of(r));
+    snow_mix_choose(info_of(r), &r->settings, &r->mix);
+    snow_status status = make_picture(r, view, settings);
+    if (status != SNOW_STATUS_NO_MEMORY || r->mix.count < 2)
+        return status;
+    snow_image_free(r->image);
+    r->image = NULL;
+    snow_mix_close(&r->mix);
+    r->mix.count = 0;
+    SNOW_TRY(open_channel(r, 0));
+    return make_picture(r, view, settings);
+}
+
 snow_status snow_render_file(snow_context *context, const char *path,
                              const snow_view *view,
                              const snow_settings *settings,
                              snow_image **image) {
-    request r = {.context = context};
-    snow_status status = make(&r, path, view, settings);
+    request r = {.context = context, .path = path};
+    snow_status status = make(&r, view, settings);
     if (status == SNOW_STATUS_OK)
         *image = r.image;
     else
         snow_image_free(r.image);
-    snow_transfer_free(r.transfer);
-    snow_volume_close(r.volume);
+    snow_mix_close(&r.mix);
     return status;
 }

@@ -11,6 +11,7 @@ import numpy
 
 import snowglass as sg
 from beside import TIER, TOOL, InFolder, plain
+from volumes import channel_words, nifti, ome_tiff
 
 
 def some(cases, count):
@@ -50,6 +51,31 @@ def plate():
     array = numpy.zeros((40, 4, 36), numpy.uint8)
     array[8:30, 1:3, 6:20] = 200
     return sg.Volume(array)
+
+
+def files_of_channels():
+    """Stains that emit light, of which one is everywhere alike; colours on black and
+    on white, in a body and in a picture."""
+    z, y, x = numpy.ogrid[:12, :24, :32]
+    parts = [100 + 40 * n for n in range(8)] * (
+        ((x - 16) ** 2 + (y - 12) ** 2 + 4 * (z - 6) ** 2)[..., None] <
+        numpy.arange(60, 140, 10)).astype(int) + (x + 3 * y + z)[..., None] % 7
+    parts[..., 3] = 77
+    words = channel_words(("DAPI", 65535), ("GFP", 16711935), ("far", -8388353))
+    for name, count, said in (("stains", 3, words), ("two", 2, ""), ("three", 3, ""),
+                              ("eight", 8, ""), ("lit", 2, (
+                                  '<Channel ID="C:0" ContrastMethod="Brightfield"/>'
+                                  '<Channel ID="C:1" ContrastMethod="Fluorescence"/>'))):
+        ome_tiff(name + ".tif", (32, 24, 12), [
+            part[..., n].astype(numpy.uint8).tobytes()
+            for part in numpy.minimum(parts, 255) for n in range(count)], said)
+        yield name + ".tif"
+    inside = parts[..., :1] > 50
+    for name, ground, rows in ("black", 0, 12), ("white", 245, 12), ("slice", 245, 1):
+        colors = numpy.where(inside, (150, 40, 120), ground).astype(numpy.uint8)
+        nifti(name + ".nii", (32, 24, rows), (128, 24), colors[6:6 + rows].tobytes()
+              if rows == 1 else colors.tobytes())
+        yield name + ".nii"
 
 
 class Same(InFolder):
@@ -217,17 +243,19 @@ class FromC(Same):
         library, pointer = ctypes.CDLL(path), ctypes.c_void_p
         context, image = pointer(), pointer()
         self.assertEqual(library.snow_context_new(None, ctypes.byref(context)), 0)
-        for make in patient, spots, cloud, plate:
-            name = self.file_of(make)
-            self.assertEqual(library.snow_render_file(
-                context, name.encode(), None, None, ctypes.byref(image)), 0)
-            for suffix in ".png", ".npy":
-                self.assertEqual(library.snow_image_save(
-                    image, ("c" + suffix).encode(), None), 0)
-                self.tool(name, "-o", "tool" + suffix)
-                self.same_bytes("c" + suffix, "tool" + suffix)
-                os.remove("c" + suffix)
-            library.snow_image_free(image)
+        mixed = list(files_of_channels())
+        names = [self.file_of(make) for make in (patient, spots, cloud, plate)]
+        for name in names + mixed:
+            with self.subTest(name):
+                self.assertEqual(library.snow_render_file(
+                    context, name.encode(), None, None, ctypes.byref(image)), 0)
+                for suffix in [".png", ".npy"][:2 if name in names else 1]:
+                    self.assertEqual(library.snow_image_save(
+                        image, ("c" + suffix).encode(), None), 0)
+                    self.tool(name, "-o", "tool" + suffix)
+                    self.same_bytes("c" + suffix, "tool" + suffix)
+                    os.remove("c" + suffix)
+                library.snow_image_free(image)
         library.snow_context_free(context)
 
 
