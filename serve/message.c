@@ -46,6 +46,7 @@ static const char *const keys[] = {
     "labels",
     "clip",
     "time",
+    "z-scale",
     "mask",
     "overlay",
     "overlay-look",

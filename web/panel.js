@@ -201,8 +201,11 @@ export class Panel {
             keys => short(keys[key] ?? 0)));
         const zoom = this.kept(number('zoom', value => value > 0 && recipe.set({zoom: value})),
             keys => short(keys.zoom ?? 1));
+        const height = this.kept(number('height, a factor', value => value > 0 && recipe.set({'z-scale': value})),
+            keys => keys['z-scale'] ?? '');
         return section('Camera', true, views, row('Angles', ...angles),
             row('Zoom', zoom, button('Frame all', 'Frame what the look shows', actions.fit)),
+            page.info.medical ? '' : row('Height', height),
             this.box('perspective', keys => keys.perspective > 0, actions.perspective));
     }
 

@@ -28,7 +28,7 @@ const shapes = ({times}) => ({
     mode: isText, preset: isText, view: isText, colormap: isText, background: isText, title: isText, labels: isText,
     azimuth: isNumber, elevation: isNumber, roll: isNumber, iso: isNumber, zoom: isWithin(1e-6, 1e6),
     perspective: isWithin(0, 179), threshold: isWithin(0, 255), time: isWithin(0, times - 1),
-    'depth-darkening': isWithin(0, 1), occlusion: isWithin(0, 1),
+    'z-scale': isOne(isWithin(1e-9, 1e9), isNamed(['auto'])), 'depth-darkening': isWithin(0, 1), occlusion: isWithin(0, 1),
     position: isList(3), target: isList(3), up: isList(3), material: isList(4),
     opacity: arePoints, 'gradient-opacity': arePoints, clip: isList(0, isList(4)),
     crop: isList(3, isList(2, isWithin(0, 1e15))),

@@ -20,7 +20,7 @@
 
 /* What a volume is opened by, and what a look is made of besides. */
 static const char *const data_keys[] = {"crop", "component", "labels", "clip",
-                                        "time", "mask",      NULL};
+                                        "time", "z-scale",   "mask",   NULL};
 static const char *const overlay_keys[] = {"overlay", "labels", "time", NULL};
 static const char *const overlay_look_keys[] = {"overlay-look", NULL};
 static const char *const look_keys[] = {

@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const char *const base_keys[] = {
-    "crop", "channel", "component", "labels", "time", "mask", NULL};
+    "crop", "channel", "component", "labels", "time", "z-scale", "mask", NULL};
 
 char *kept_key_of(const json_t *recipe, const char *const *names) {
     json_t *some = json_object();

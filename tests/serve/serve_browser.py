@@ -111,7 +111,7 @@ def mixed():
         each["active"] = False
     with open(f"{plain}/.zattrs", "w") as out:
         json.dump(about, out)
-    plan("plain", plain)
+    plan("plain", plain, copies=(PICTURE, SLICE))
     two = points("two.json", [[0, 0], [900, 1]])
     plan("channels", told, copies=(PICTURE, SLICE))
     plan("begun", told, "--component", "1")

@@ -1320,6 +1320,13 @@ async function plainChannels() {
         return document.querySelector('.said').textContent;
     });
     check('lines speak of the page', said === 'give Channels, or Range 0,1', said);
+    const {radius} = await page.evaluate(() => window.snowglass.page.info);
+    await page.keyboard.press('x');
+    await slicesRest(page);
+    await settle(page, enter(page.getByLabel('height, a factor'), '3'));
+    await page.waitForFunction(was => window.snowglass.page.info.radius > 1.2 * was, radius);
+    const command = await keepBoth(page);
+    check('the height is stretched', command.includes('--z-scale 3'), command);
     await page.context().close();
 }
 
