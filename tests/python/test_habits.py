@@ -129,9 +129,9 @@ class Movies(InFolder):
 
 class Progress(InFolder):
     def test_what_takes_long_reports_and_can_be_ended(self):
-        noise = numpy.random.default_rng(1).random((90, 90, 90)).astype("f4")
+        noise = numpy.random.default_rng(1).random((140, 140, 140)).astype("f4")
         volume = sg.Volume(noise)
-        picture = volume.render(size=2400, quality="draft", threads=1)
+        picture = volume.render(size=3600, quality="draft", threads=1)
 
         def stop(stage, fraction):
             raise ZeroDivisionError
@@ -141,9 +141,9 @@ class Progress(InFolder):
                 ("read", lambda told: sg.render(
                     "phantom:turbulence", dims=(100,) * 3, size=24, progress=told)),
                 ("render", lambda told: volume.render(
-                    size=1600, quality="high", threads=1, progress=told)),
+                    size=2400, quality="high", threads=1, progress=told)),
                 ("render", lambda told: volume.project(
-                    "sum", size=1600, quality="high", threads=1,
+                    "sum", size=2400, quality="high", threads=1,
                     progress=told)),
                 ("write", lambda told: volume.save("v.nii.gz", progress=told)),
                 ("write", lambda told: picture.save("p.png", progress=told)),
