@@ -105,7 +105,7 @@ typedef struct snow_insitu_settings {
 SNOW_RECORD(snow_insitu_settings);
 SNOW_API snow_status snow_insitu_set(
     snow_insitu *insitu, const snow_insitu_settings *settings);
-/* Collective. Whether rank 0 can write there (NULL: where it is told to). */
+/* Collective. Whether rank 0 can write there (NULL: the output set). */
 SNOW_API snow_status snow_insitu_try_output(snow_insitu *, const char *output);
 /* The time of the next step, which annotations may have. */
 SNOW_API snow_status snow_insitu_set_time(

@@ -62,8 +62,8 @@ void snow_cf_attributes_begin(cf_attributes *out);
 void snow_cf_take(const char *name, const cf_attribute *given,
                   cf_attributes *out);
 
-/* Variables that say where others lie, which are no volumes unless they are
- * asked for; all zeros are none. */
+/* Variables that say where others lie, which are volumes only where they are
+ * asked for by name; zeroed, it has no names. */
 typedef struct cf_aside {
     char names[4096]; /* " nav_lon  nav_lat " */
 } cf_aside;

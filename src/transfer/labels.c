@@ -268,7 +268,8 @@ static bool is_mask(const snow_histogram *histogram, const snow_look *look,
             (!s->unlike || 2 * s->counted < s->unlike));
 }
 
-/* A single image: few greys are a drawing, and its sides no surface. */
+/* A single image: few greys are a drawing, and its sides no surface.  One row
+ * is no image: the values of all steps of a movie are such a list. */
 static bool is_flat(const snow_volume *volume) {
     snow_extent whole;
     snow_volume_find_extent(volume, &whole);
