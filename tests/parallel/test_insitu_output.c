@@ -33,9 +33,9 @@ typedef struct run {
     bool overwrite, sync;        /* of that */
     int steps;                   /* each makes the same picture */
     char folder[SUPPORT_FOLDER_BYTES];
-    snow_status applied, made[RANKS];
+    snow_status applied[RANKS], made[RANKS];
     char said[RANKS][1024];
-    int64_t pictures;
+    int64_t pictures[RANKS];
 } run;
 
 static float field[SIDE * SIDE * SIDE];
@@ -73,12 +73,12 @@ static snow_status run_rank(snow_comm *comm, void *user) {
     set_all(insitu, r, rank); /* what is wrong is told by a step */
     snprintf(recipe, sizeof recipe, "%s/r.json", r->folder);
     if (r->recipe)
-        r->applied = snow_recipe_apply_file(insitu, recipe);
+        r->applied[rank] = snow_recipe_apply_file(insitu, recipe);
     for (int step = 0; step < r->steps; step++)
         r->made[rank] = snow_insitu_step(insitu, 7);
     snprintf(r->said[rank], sizeof *r->said, "%s", snow_insitu_message(insitu));
     snow_status status = snow_insitu_get_stats(insitu, &stats);
-    r->pictures = stats.pictures;
+    r->pictures[rank] = stats.pictures;
     snow_insitu_free(insitu);
     return status;
 }
@@ -136,7 +136,8 @@ a_recipe_without_an_output_says_how_files_are_written(void **state) {
                  .steps = 2};
         float pixel[4];
         make(&r, *state);
-        assert_int_equal(r.applied, SNOW_STATUS_OK);
+        assert_int_equal(r.applied[0], SNOW_STATUS_OK);
+        assert_int_equal(r.applied[1], SNOW_STATUS_OK);
         if (r.made[1] != cases[i].second)
             fail_msg("%s: %s", r.recipe, r.said[1]);
         take_pixel(*state, pixel);
@@ -164,12 +165,13 @@ static void an_output_is_tried_before_a_picture_is_drawn(void **state) {
             .output = cases[i].output, .recipe = cases[i].recipe, .steps = 1};
         make(&r, *state);
         const bool early = !r.output;
-        assert_true(early == (r.applied != SNOW_STATUS_OK));
-        for (int rank = 0; rank < RANKS; rank++)
+        for (int rank = 0; rank < RANKS; rank++) {
+            assert_true(early == (r.applied[rank] != SNOW_STATUS_OK));
             if (r.made[rank] == SNOW_STATUS_OK ||
                 !strstr(r.said[rank], cases[i].wrong))
                 fail_msg("case %zu, rank %d: %s", i, rank, r.said[rank]);
-        assert_int_equal(r.pictures, 0);
+            assert_int_equal(r.pictures[rank], 0);
+        }
     }
 }
 
