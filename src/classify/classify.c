@@ -29,8 +29,9 @@ bool snow_classify_value(const snow_classifier *c, double native,
     bool interesting = snow_is_interesting(opacity, c->threshold);
     if (c->only_counts || (!interesting && !c->keep_all))
         return interesting;
-    double rgb[3];
-    snow_transfer_color(c->transfer, value, rgb);
+    double rgb[3] = {0, 0, 0};
+    if (!c->no_colors)
+        snow_transfer_color(c->transfer, value, rgb);
     /* Along an axis of a cubic grid the exponent is 1. */
     double corrected = c->exponent == 1
                            ? opacity
@@ -65,7 +66,8 @@ snow_status snow_classifier_make(snow_context *context,
                                  snow_classifier *c) {
     c->volume = volume;
     c->transfer = transfer;
-    c->channels = transfer->grey ? 2 : 4;
+    c->no_colors = options->no_colors;
+    c->channels = transfer->grey || c->no_colors ? 2 : 4;
     c->keep_all = options->keep_all;
     c->premultiply = options->premultiply;
     c->only_counts =

@@ -49,6 +49,7 @@ struct snow_classifier {
     int channels;     /* 2 or 4 */
     bool keep_all;    /* also uninteresting voxels, as samples of 0 */
     bool only_counts; /* which are interesting, without their samples */
+    bool no_colors;   /* samples are opacities behind a grey of 0 */
     bool premultiply; /* colours are multiplied by opacity here */
     double threshold; /* opacity 0 to 255 */
     double exponent;  /* path length / reference length */
@@ -69,6 +70,7 @@ typedef struct snow_classify_options {
     double opacity_exponent; /* a' = 1 - (1 - a)^exponent (model, section 6) */
     bool keep_all, premultiply;
     bool only_counts; /* samples are 0, but with a gradient opacity */
+    bool no_colors;   /* samples are opacities behind a grey of 0 */
     snow_isa isa;     /* resolved, or AUTO for the plain loops */
 } snow_classify_options;
 

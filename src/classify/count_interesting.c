@@ -95,6 +95,7 @@ snow_status snow_visit_interesting(const snow_interesting_walk *walk,
     const snow_classify_options options = {.threshold = walk->threshold,
                                            .opacity_exponent = walk->exponent,
                                            .only_counts = walk->only_counts,
+                                           .no_colors = true,
                                            .isa = walk->isa};
     SNOW_TRY(snow_volume_need_voxels(volume));
     snow_volume_find_extent(volume, &v.part);
