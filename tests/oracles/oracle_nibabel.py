@@ -59,7 +59,9 @@ for kind in ("c8", "c16"):
     for number, values in enumerate((stored.real, stored.imag)):
         oracle.expect("complex.nii", values, np.diag([1, 2, 3, 1]),
                       ["--component", number], name=f"{kind} {number}")
-    oracle.expect("complex.nii", np.abs(stored), np.diag([1, 2, 3, 1]),
+    # numpy's abs is a bit off with AVX-512.
+    parts = np.stack((stored.real, stored.imag), -1)
+    oracle.expect("complex.nii", oracle.magnitude(parts), np.diag([1, 2, 3, 1]),
                   name=f"magnitude of {kind}")
     oracle.says(kind, "complex.nii", "the magnitude of the 2 components is used")
 
