@@ -56,6 +56,11 @@ export class Recipe {
         this.changed();
     }
 
+    /** What follows is a step of its own, however soon it comes. */
+    part() {
+        this.last = {names: '', at: 0};
+    }
+
     /** A drag is one step, however many changes it makes, and none without any. */
     begin() {
         if (this.gesture)
@@ -135,7 +140,7 @@ export class Recipe {
         for (const key of Object.keys(this.keys))
             if (!(key in keys) && key !== 'size')
                 changes[key] = null;
-        this.last = {names: '', at: 0};
+        this.part();
         this.set(changes);
     }
 
@@ -149,7 +154,7 @@ export class Recipe {
         if (!step)
             return false;
         to.push(this.now(Object.keys(step)));
-        this.last = {names: '', at: 0};
+        this.part();
         this.apply(step);
         return true;
     }

@@ -310,7 +310,12 @@ engine.on('open', () => {
     say('');
 });
 engine.on('said', message => say(plain(message.text)));
-engine.on('progress', ({stage, part}) => say(part < 1 ? `${stage}, ${Math.round(100 * part)} %` : ''));
+/** The line of progress, which replaces nothing but itself. */
+let progress = '';
+engine.on('progress', ({stage, part}) => {
+    if (said.textContent === progress || !said.textContent)
+        say(progress = part < 1 ? `${stage}, ${Math.round(100 * part)} %` : '');
+});
 engine.on('command', message => copy('The command that makes this picture', message.text));
 engine.on('recipe', message => save(`${baseName()}.json`,
     new Blob([`${message.text}\n`], {type: 'application/json'})));
@@ -418,6 +423,7 @@ new ResizeObserver(() => {
         fitWindow();
 }).observe(picture);
 engine.open();
+document.addEventListener('pointerdown', () => recipe.part(), true);
 document.addEventListener('dragover', event => event.preventDefault());
 document.addEventListener('drop', event => {
     event.preventDefault();

@@ -613,6 +613,7 @@ async function handles(page) {
     const slider = page.getByRole('slider', {name: 'tilted clip plane 1'}).and(page.locator('input'));
     await settle(page, slider.fill('0.5'));
     const moved = (await keys(page)).clip[1];
+    // A click is a step of its own, however soon it comes.
     await page.getByRole('button', {name: 'Remove tilted plane 1'}).click();
     await press(page, 'z');
     check('a tilted plane is moved, removed and back', String((await keys(page)).clip[1]) === String(moved) &&
@@ -1343,7 +1344,6 @@ async function many() {
         `${list} ${await on()}`);
     await page.evaluate(() => { document.querySelector('.said').textContent = ''; });
     await section.getByLabel('channel 8', {exact: true}).click();
-    // A slow machine says its progress too, and has taken the line away by the rest.
     await page.waitForFunction(() => /up to 8/.test(document.querySelector('.said').textContent));
     await rest(page);
     check('a ninth is refused with what to do', true);
