@@ -45,6 +45,8 @@ static int run_verb(const verb_row *verb, const options *opts) {
         return cmd_tf(opts);
     case VERB_DOCTOR:
         return cmd_doctor(opts);
+    case VERB_REPORT:
+        return cmd_report(opts);
     default:
         /* `help` takes a word; other verbs take files. */
         if (opts->operand_count > 1)

@@ -110,7 +110,7 @@ static json_t *libraries_json(void) {
 
 /* Features that are missing are listed too, as false or 1, so that a script
  * need not change when they arrive. */
-static int report_json(void) {
+static json_t *doctor_json(void) {
     json_t *o = json_object();
     json_object_set_new(o, "version", json_string(snow_version()));
     for (size_t i = 0; i < LISTS; i++)
@@ -127,7 +127,14 @@ static int report_json(void) {
     json_object_set_new(o, "memory_bytes",
                         json_integer((json_int_t)memory_bytes()));
     json_object_set_new(o, "jansson", json_string(jansson_version_str()));
-    return print_json(o);
+    return o;
+}
+
+void doctor_write(FILE *out) {
+    json_t *object = doctor_json();
+    if (json_dumpf(object, out, JSON_FORM) == 0)
+        putc('\n', out);
+    json_decref(object);
 }
 
 static void print_row(const char *key, const char *text) {
@@ -177,5 +184,5 @@ static int report_text(void) {
 /* Needs no context, no file and hardly any memory, so it works where nothing
  * else does. */
 int cmd_doctor(const options *opts) {
-    return opts->json ? report_json() : report_text();
+    return opts->json ? print_json(doctor_json()) : report_text();
 }

@@ -5,6 +5,8 @@
 
 #include "options/options.h"
 
+#include <stdio.h>
+
 int cmd_render(const options *opts);
 int cmd_turntable(const options *opts);
 int cmd_movie(const options *opts);
@@ -14,8 +16,12 @@ int cmd_phantom(const options *opts);
 int cmd_convert(const options *opts);
 int cmd_compare(const options *opts);
 int cmd_doctor(const options *opts);
+int cmd_report(const options *opts);
 int cmd_export(const options *opts);
 int cmd_tf(const options *opts);
+
+/* What doctor --json prints. */
+void doctor_write(FILE *out);
 
 /* The first of its two operands is the output. */
 void export_take(options *opts);

@@ -28,13 +28,14 @@ enum {
     OVERLAID = FILED | SERVE,     /* all verbs that draw overlays */
     PICTURE = RENDER | SLICE,     /* all verbs that make pictures */
     LOOKED = PICTURE | VERB_INFO, /* all verbs that use a look */
-    INPUT = LOOKED | CONVERT,     /* all verbs that read a volume */
+    REPORT = VERB_REPORT,
+    INPUT = LOOKED | CONVERT | REPORT, /* all verbs that read a volume */
     EVERY = INPUT | VERB_PHANTOM | VERB_COMPARE | VERB_DOCTOR | VERB_HELP | TF
 };
 
 /* clang-format off */
 const option_row option_table[] = {
-    {"output", 'o', "FILE", TOPIC_OUTPUT, FILED | PHANTOM | CONVERT | TF,
+    {"output", 'o', "FILE", TOPIC_OUTPUT, FILED | PHANTOM | CONVERT | TF | REPORT,
      read_text,
      FIELD(output), 0, 0, "output file. Picture: .png, .jpg or .webp; .npy, .exr, .tif or .pfm for "
      "float pixels; - writes PNG to stdout. Movie: .mp4, .webm, .gif or .webp, or a "
@@ -51,7 +52,8 @@ const option_row option_table[] = {
      "(default auto)"},
     {"bits", 0, "8|16", TOPIC_OUTPUT, FILED, read_choice, FIELD(bits), 0, 0,
      "bits per channel of a PNG (default 8)"},
-    {"overwrite", 'y', NULL, TOPIC_OUTPUT, FILED | PHANTOM | CONVERT | TF | EXPORT,
+    {"overwrite", 'y', NULL, TOPIC_OUTPUT, FILED | PHANTOM | CONVERT | TF | EXPORT |
+     REPORT,
      read_flag,
      FIELD(overwrite), 0, 0, "replace existing files of --output, --depth and --stats (default: "
      "refuse)"},
@@ -375,6 +377,8 @@ const verb_row verb_table[] = {
      "run the benchmarks of the paper and of speed"},
     {"doctor", VERB_DOCTOR, 0, "[--json]",
      "print what this build and this machine can do"},
+    {"report", VERB_REPORT, 1, "INPUT [-o FILE]",
+     "print what a report of a fault needs, without names"},
     {"help", VERB_HELP, -1, "[NAME]",
      "print help on a verb, topic, option or preset"},
     {"tf", VERB_TF, -1,

@@ -34,7 +34,8 @@ enum {
     VERB_TF = 1 << 10,
     VERB_SLICE = 1 << 11,
     VERB_SERVE = 1 << 12,
-    VERB_EXPORT = 1 << 13
+    VERB_EXPORT = 1 << 13,
+    VERB_REPORT = 1 << 14
 };
 
 typedef enum topic {

@@ -23,7 +23,7 @@ run 0 "the overview" "$TOOL" --help
 same_page overview.txt
 for word in output mode sparse kernel look quality camera labels data run \
     more render turntable movie slice info phantom convert \
-    compare doctor help bench tf serve export; do
+    compare doctor report help bench tf serve export; do
     run 0 "help $word" "$TOOL" help $word
     same_page "$(cd "$HERE/cli/help" && echo */"$word.txt")"
     cp "$OUT" page
