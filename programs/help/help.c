@@ -1,8 +1,8 @@
 /* help.c - finds what is asked: the page of a verb (verb.c), of a topic
  * (topic.c), of an option or preset (word.c), or the overview. */
 #include "help/help.h"
+#include "options/elsewhere.h"
 #include "options/guess.h"
-#include "options/renamed.h"
 #include "run/log.h"
 
 #include <stdio.h>
@@ -68,7 +68,7 @@ static int refuse_word(const char *word) {
         if (!verb_named(row->name) && topic_named(row->name) < 0)
             guess_offer(&near, row->name);
     guess_offer_all(&near, snow_preset_name);
-    const char *now = renamed_option(word + strspn(word, "-"));
+    const char *now = option_elsewhere(word + strspn(word, "-"));
     if (now)
         return fail_usage("%s: %s", word, now);
     const char *what = "is not a verb, topic, option or preset";

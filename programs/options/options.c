@@ -4,9 +4,9 @@
  * option counts.  Options that are unknown or of another verb are refused. */
 #include "options/options.h"
 #include "options/config.h"
+#include "options/elsewhere.h"
 #include "options/guess.h"
 #include "options/parse.h"
-#include "options/renamed.h"
 #include "run/log.h"
 #include "run/start.h"
 
@@ -155,8 +155,8 @@ static int refuse_unknown(const verb_row *verb, const char *word, int code) {
                           verb->name);
     char name[64], near[128];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
-    if (renamed_option(name))
-        return fail_usage("--%s: %s", name, renamed_option(name));
+    if (option_elsewhere(name))
+        return fail_usage("--%s: %s", name, option_elsewhere(name));
     /* getopt reports unknown and ambiguous abbreviations in the same way, but
      * they need different advice. */
     int hits = 0;
@@ -288,9 +288,9 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
         /* getopt_long accepts abbreviations: --azim would be --azimuth, until
          * another option begins so. */
         const bool whole = !word || strcspn(word, "=") == strlen(row->name);
-        if (!whole && renamed_option(word))
+        if (!whole && option_elsewhere(word))
             return fail_usage("--%.*s: %s", (int)strcspn(word, "="), word,
-                              renamed_option(word));
+                              option_elsewhere(word));
         if (!whole)
             return fail_usage("--%s: unknown option; did you mean --%s?", word,
                               row->name);

@@ -1003,7 +1003,7 @@ def endings():
             ([SMALL, "--listen", "unix:/no/such/folder/x"], 4, "--listen"),
             ([SMALL, "--listen", "8000"], 2, "give a port such as :8000"),
             ([SMALL, "--listen", "unix:"], 2, "no place to listen"),
-            ([SMALL, "--socket", "x"], 2, "--socket: is now --listen unix:PATH"),
+            ([SMALL, "--socket", "x"], 2, "--socket: unknown option"),
             ([SMALL, "--preset", "nonsense"], 2, "--preset"),
             (["-"], 2, "standard input")):
         done = subprocess.run([TOOL, "serve", *arguments], capture_output=True,

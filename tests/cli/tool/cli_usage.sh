@@ -6,26 +6,19 @@
 refusals 2 "$TOOL" <<'END'
 --azimoth 3 x|--azimoth: unknown option; did you mean --azimuth\?
 --thresold=3 x|did you mean --threshold\?
+--ambient 0.5 x|--ambient: unknown option
 --flurb x|--flurb: unknown option; see snowglass help render
 -Z x|-Z: unknown option
 --s 3 x|matches several options
 --overwrite=3 x|--overwrite takes no value
 info --roll 3 x|--roll: is not an option of info but of render
 x --json|--json: is not an option of render but of info
---level 3 x|--level: is now --window W,L$
---log x|--log: is now --scale log$
---symlog=5 x|--symlog: is now --scale symlog\[:X\]$
 --scale ln x|is unknown; choose from: linear, log, symlog, symlog:X
 --scale symlog:0 x|out of range
---unit K x|--unit: is now --legend="TITLE \(UNIT\)"$
---outline x|--outline: is now --box outline$
---time-label x|--time-label: is now --annotate step$
 --box edges x|'edges' is unknown; choose from: outline, axes
 --legend= x|--legend: needs a value after =
 --annotate date x|'date' is unknown
---footprint 3 x|--footprint: is now --kernel NAME:N$
 --kernel gaus:5 x|did you mean gauss\?
-help level|level: is now --window W,L$
 --cmap bone x|--cmap: is here --colormap NAME$
 slice --clim=0,9 x|--clim: is here --range LO,HI$
 -q info x|info: the verb must come first; give snowglass info
@@ -113,8 +106,6 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 --shade flat x|choose from: phong, none
 --light 30 x|give key, head, or AZIMUTH,ELEVATION
 --material 2,0,0,1 x|is not a material; give AMBIENT,DIFFUSE,SPECULAR from 0 to 1
---ambient 0.5 x|--ambient: is now --material A,D,S,N$
---shininess 9 x|--shininess: is now --material A,D,S,N$
 --depth-darkening 2 x|from 0 to 1
 --occlusion 1.5 x|from 0 to 1
 --type int7 x|choose from: int8 uint8 int16
