@@ -27,7 +27,6 @@ SNOW_API snow_status snow_view_orientation(snow_context *context,
     const snow_volume_info *info, const snow_view *view, char letters[4][4]);
 SNOW_API snow_status snow_overlay_orientation(
     snow_overlay *overlay, const snow_volume_info *info, const snow_view *view);
-
 /* At the right, sides of at least 128 pixels: the colours with ticks, and
  * opacity as a line. `unit` may be NULL. `range`, of pictures without opacity:
  * values of the first and the last colour; else NULL. Bar 0 is the lowest. */
@@ -49,5 +48,35 @@ SNOW_API bool snow_time_text(
     const snow_volume_info *info, const char *format, char *out, size_t room);
 /* Lines of text, upper left; sides of at least 64 pixels. */
 SNOW_API snow_status snow_overlay_title(snow_overlay *, const char *text);
+/* What is measured: along a line, at the second of three points, in an ellipse
+ * on a slice; in units of the world's axes, free of their scale. An ellipse has
+ * its middle and where two half-axes end. */
+typedef enum snow_measure_kind {
+    SNOW_MEASURE_NONE,
+    SNOW_MEASURE_LINE,
+    SNOW_MEASURE_ANGLE,
+    SNOW_MEASURE_ELLIPSE
+} snow_measure_kind;
+typedef struct snow_measure {
+    size_t size;
+    snow_measure_kind kind;
+    int axis, outside; /* of the grid; the first point out of the volume: 1.. */
+    int64_t index, count; /* slice across that axis; voxels, -1: none of it */
+    double points[3][3];
+    double result; /* length; degrees; area */
+    double mean, deviation, min, max; /* of data values; NaN: unknown */
+    char unit[16];
+} snow_measure;
+SNOW_RECORD(snow_measure);
+#define SNOW_MEASURES_MAX 64
+/* Reads number `n`, from 0, of "line X,Y,Z X,Y,Z; angle P P P; ellipse AXIS POS
+ * C A B" (docs/output.md); NONE past the last. `info` NULL: checks the words.
+ * Finds the values, in a volume or a crop of it. Draws it, from (x, y) on. */
+SNOW_API snow_status snow_measure_read(snow_context *, const char *text, int n,
+    const snow_volume_info *info, snow_measure *out);
+SNOW_API snow_status snow_measure_values(const snow_volume *, snow_measure *);
+SNOW_API snow_status snow_overlay_measure(snow_overlay *overlay,
+    const snow_volume_info *info, const snow_view *view, double x, double y,
+    const char *value_unit, const snow_measure *measure);
 
 #endif

@@ -159,7 +159,8 @@ static snow_status make_annotations(const work *w, const options *opts,
         s->transfer,
         {painted->range[0], painted->range[1]},
         &s->channels,
-        layers_legend(&s->layers, false)};
+        layers_legend(&s->layers, false),
+        .measures = s->measures};
     return annotations_make(&annotations, opts->azimuth, -1, image, s->context,
                             out);
 }
@@ -244,7 +245,10 @@ static int report_figures(work *w, const options *opts) {
         return done;
     if (!is_special(opts->stats))
         interrupt_hold();
-    int stats = write_json(stats_json(&report), opts->stats, opts->overwrite);
+    json_t *tree = stats_json(&report);
+    if (w->state.measures)
+        json_object_set_new(tree, "measures", measures_json(w->state.measures));
+    int stats = write_json(tree, opts->stats, opts->overwrite);
     return stats == SNOW_STATUS_OK ? done : stats;
 }
 
@@ -255,6 +259,8 @@ static void report_choices(const work *w) {
         say("%s%s%s%s", text, w->painted.words,
             w->state.opts->named ? "; to " : "",
             w->state.opts->named ? w->state.opts->output : "");
+    if (w->state.opts->verbosity >= 0)
+        measures_report(w->state.measures);
     warn_picture(&w->state, w->image);
     render_state_note(&w->state, w->painted.range);
 }
@@ -279,6 +285,8 @@ static int make_picture(work *w, const options *opts) {
     progress_begin(opts, "reading");
     int done = render_state_open(&w->state, opts->operands[0], opts->time);
     progress_end(opts);
+    if (done == CONTINUE)
+        done = render_state_measure(&w->state, false);
     if (done != CONTINUE)
         return done;
     progress_begin(opts, "rendering");

@@ -45,6 +45,8 @@ static int make_picture(slice_work *w) {
     int done = slice_inspect(w);
     if (done == CONTINUE)
         done = slice_read(w);
+    if (done == CONTINUE)
+        done = slice_measure(w);
     if (done != CONTINUE)
         return done;
     snow_status status = slice_draw(w);
@@ -97,6 +99,7 @@ static void report(const slice_work *w) {
     say("%s: %s; %s; %s; %dx%d pixels%s%s", name_of_input(w->path), volume,
         place, colors, w->size[0], w->size[1], w->opts.named ? "; to " : "",
         w->opts.named ? w->opts.output : "");
+    measures_report(w->measures);
     if (picture_is_empty(w->image))
         say("note: the picture is empty: the slice has no finite value, or "
             "with --scale log none above 0; give another --at");
@@ -191,6 +194,8 @@ static json_t *figures(const slice_work *w) {
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         json_object_del(tree, others[i]);
     json_object_set_new(tree, "slice", figures_of_place(w));
+    if (w->measures)
+        json_object_set_new(tree, "measures", measures_json(w->measures));
     json_object_set_new(
         json_object_get(tree, "bytes"), "file",
         json_integer((json_int_t)snow_context_bytes_read(w->context)));
@@ -283,6 +288,7 @@ int cmd_slice(const options *opts) {
     snow_transfer_free(w.transfer);
     snow_volume_close(w.volume);
     channels_close(&w.channels);
+    free(w.measures);
     free(w.cut);
     free(w.places);
     snow_context_free(w.context);

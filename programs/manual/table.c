@@ -28,7 +28,7 @@ static const struct {
                READER(preset),    READER(colormap), READER(view),
                READER(color),     READER(range),    READER(points),
                READER(light),     READER(legend),   READER(overlay_look),
-               READER(annotate),  READER(material), READER(gradient_points),
+               READER(annotate),  READER(material), READER(measure), READER(gradient_points),
                READER(scale),     READER(place),    READER(listen),
                READER(z_scale)};
 

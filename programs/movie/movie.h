@@ -24,6 +24,7 @@ typedef struct movie_shot {
     double azimuth;   /* of the camera, in degrees */
     int64_t step;     /* the step number to show, -1: none */
     int64_t slice;    /* of a list of slices: its number, */
+    int axis;         /* of the grid, across which, */
     int64_t place;    /*   and its place among them */
 } movie_shot;
 

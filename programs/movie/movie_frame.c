@@ -56,6 +56,10 @@ static snow_status make_frame(const movie *s, frame_slot *slot) {
     picture_annotations annotations = s->annotations;
     char path[PATH_MAX];
     annotations.info.time_value = s->times[slot->index];
+    if (s->list->slices) {
+        annotations.axis = shot->axis;
+        annotations.index = &shot->slice;
+    }
     snow_status status = annotations_make(
         &annotations, shot->azimuth, shot->step,
         s->list->slices ? NULL : slot->image, slot->context, &overlay);

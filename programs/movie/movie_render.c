@@ -63,6 +63,8 @@ int shots_volume(shot_renderer *shots, const movie_shot *shot) {
         progress(s->opts, "reading");
     shots->time = shot->time;
     int done = render_state_open(s, shot->path, shot->time);
+    if (done == CONTINUE && s->turns)
+        done = render_state_measure(s, false);
     return done == CONTINUE
                ? shots_check(shots, name_of_input(shot->path), &s->whole)
                : done;
@@ -77,7 +79,8 @@ picture_annotations shots_annotations(const shot_renderer *shots) {
         s->transfer,
         {shots->painted.range[0], shots->painted.range[1]},
         &s->channels,
-        layers_legend(&s->layers, s->each_time && shots->count > 1)};
+        layers_legend(&s->layers, s->each_time && shots->count > 1),
+        .measures = s->measures};
 }
 
 /* Frames are annotated elsewhere and silently: what one has no room for is said

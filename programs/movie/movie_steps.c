@@ -87,12 +87,9 @@ int steps_list(step_files *files, shot_renderer *shots, shot_list *out) {
     int done = given ? CONTINUE : steps_expand(opts, files);
     if (done != CONTINUE)
         return done;
-    movie_shot first = {files->paths[0],
-                        opts->time_range ? 0 : opts->time,
-                        opts->azimuth,
-                        0,
-                        0,
-                        0};
+    movie_shot first = {.path = files->paths[0],
+                        .time = opts->time_range ? 0 : opts->time,
+                        .azimuth = opts->azimuth};
     out->count = files->count;
     out->steps = true;
     shots->state.steps = true;

@@ -115,6 +115,7 @@ static void fill_recipe(const options *opts, const verb_row *verb,
     out->title = opts->title;
     out->annotate = opts->annotate.text;
     out->box = opts->box;
+    out->measure = opts->measure;
     fill_settings(opts, &out->settings);
 }
 

@@ -26,6 +26,7 @@ enum {
     SLICE = VERB_SLICE,
     FILED = WRITTEN | SLICE,      /* all verbs whose pictures are files */
     OVERLAID = FILED | SERVE,     /* all verbs that draw overlays */
+    MEASURED = VERB_RENDER | TURNTABLE | SLICE | SERVE | EXPORT,
     PICTURE = RENDER | SLICE,     /* all verbs that make pictures */
     LOOKED = PICTURE | VERB_INFO, /* all verbs that use a look */
     REPORT = VERB_REPORT,
@@ -187,6 +188,12 @@ const option_row option_table[] = {
      "where the unit counts from one"},
     {"box", 0, "outline|axes", TOPIC_LABELS, RENDER, read_choice, FIELD(box), 0, 0, "draw the volume's box, which is framed then. outline: its edges; axes: with "
      "ticks: coordinates in the unit of the file"},
+    {"measure", 0, "LIST", TOPIC_LABELS, MEASURED, read_measure, FIELD(measure), 0, 0,
+     "draw and print measures, between semicolons, in units of the world: line P P, its "
+     "length; angle P P P, at the second point; ellipse AXIS POS C A B, the values of its "
+     "voxels: on the slice at POS along AXIS, as of --axis, around C, with half-axes of "
+     "lengths A across the slice's picture and B up, or to points A and B. A point is X,Y,Z; C "
+     "may lack its coordinate along AXIS, such as \"line 0,0,0 10,0,0; ellipse axial 12.5 0,20 15 10\""},
 
     {"dims", 0, "XxYxZ", TOPIC_DATA, INPUT | PHANTOM, read_dims, FIELD(dims), 0,
      0, "voxels of raw data or of a phantom, x fastest"},

@@ -163,7 +163,8 @@ typedef struct options {
     legend_value legend;
     const char *title; /* NULL: none */
     annotate_value annotate;
-    const char *box; /* "outline", "axes"; NULL: none */
+    const char *box;     /* "outline", "axes"; NULL: none */
+    const char *measure; /* NULL: nothing */
     int verbosity;   /* -1 quiet, 0, 1 verbose; the last one counts */
 
     bool version, help;

@@ -41,6 +41,7 @@ option_read read_gradient_points; /* point_list */
 option_read read_light;           /* light_value */
 option_read read_legend;          /* legend_value */
 option_read read_annotate;        /* annotate_value */
+option_read read_measure;         /* const char * */
 option_read read_material;        /* double[4] */
 option_read read_scale;           /* scale_value */
 option_read read_place;           /* place_value */

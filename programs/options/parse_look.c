@@ -1,5 +1,5 @@
 /* parse_look.c - the readers of options of the look: colours, ranges,
- * opacities, light. */
+ * opacities, light; and of what is measured. */
 #include "options/parse.h"
 
 #include <math.h>
@@ -167,4 +167,21 @@ bool read_light(const option_row *row, const char *text, void *field,
     light.elevation = pair[1];
     *(light_value *)field = light;
     return true;
+}
+
+/* What does not depend on a volume is checked at once. */
+bool read_measure(const option_row *row, const char *text, void *field,
+                  char wrong[WRONG_BYTES]) {
+    snow_context *context = NULL;
+    snow_measure one = {.size = sizeof one};
+    snow_status status = snow_context_new(NULL, &context);
+    for (int n = 0; status == SNOW_STATUS_OK && (!n || one.kind); n++)
+        status = snow_measure_read(context, text, n, NULL, &one);
+    if (status == SNOW_STATUS_BAD_USAGE)
+        snprintf(wrong, WRONG_BYTES, "is wrong: %s",
+                 snow_context_message(context));
+    snow_context_free(context);
+    if (status == SNOW_STATUS_BAD_USAGE)
+        return false;
+    return read_text(row, text, field, wrong);
 }

@@ -29,6 +29,7 @@ int annotations_check(const options *opts) {
                          : opts->title         ? "title"
                          : opts->box           ? "box"
                          : opts->annotate.text ? "annotate"
+                         : opts->measure       ? "measure"
                                                : NULL;
     if (opts->output && wanted && !shows_annotations(opts->output))
         return fail_usage("%s: --%s cannot be drawn into a file of floats; "
@@ -50,7 +51,7 @@ void annotations_find_unit(const options *opts, const snow_volume *volume,
     snow_volume_statistics of;
     snow_volume_statistics_init(&of);
     double ends[2] = {INFINITY, INFINITY}; /* lowest, -highest */
-    if (!opts->legend.bar || *opts->legend.unit || whole->hounsfield ||
+    if (!(opts->legend.bar || opts->measure) || whole->hounsfield ||
         !whole->medical || *whole->modality)
         return;
     if (snow_volume_get_statistics(volume, &of) == SNOW_STATUS_OK &&
@@ -196,6 +197,11 @@ static snow_status add_annotations(const picture_annotations *annotations,
         status = snow_overlay_orientation(overlay, &annotations->info, view);
     if (status == SNOW_STATUS_OK)
         status = add_title(annotations, step, overlay);
+    if (status == SNOW_STATUS_OK)
+        status = measures_draw(annotations->measures, &annotations->info, view,
+                               0, 0, annotations->axis,
+                               annotations->index ? *annotations->index : -1,
+                               overlay);
     if (status == SNOW_STATUS_OK && opts->box)
         status = snow_overlay_box(overlay, &annotations->info, view,
                                   options_has_axes(opts));
@@ -240,7 +246,7 @@ snow_status annotations_make(const picture_annotations *annotations,
     if (!shows_annotations(opts->output) && strcmp(opts->output, "-") != 0)
         return SNOW_STATUS_OK;
     if (!letters && !opts->legend.scale && !opts->title &&
-        !opts->annotate.text && !opts->box)
+        !opts->annotate.text && !opts->box && !annotations->measures)
         return SNOW_STATUS_OK;
     view.azimuth = azimuth;
     char time[TITLE_BYTES];

@@ -4,6 +4,7 @@
 #ifndef ANNOTATIONS_H
 #define ANNOTATIONS_H
 
+#include "measure/measures.h"
 #include "picture/channels.h"
 
 /* All that the overlays depend on, except the frame.  Several threads may read
@@ -17,6 +18,9 @@ typedef struct picture_annotations {
                         none */
     const channel_set *channels;  /* instead of that look; NULL: none */
     const snow_transfer *overlay; /* of layers_legend, or NULL */
+    const measures *measures;     /* or NULL */
+    int axis;                     /* of the grid, that a slice lies across, */
+    const int64_t *index;         /* and its number; NULL: it is no slice */
 } picture_annotations;
 
 /* Refuses annotations for files of floats, which cannot show them.  Returns

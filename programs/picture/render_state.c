@@ -67,6 +67,7 @@ void render_state_free(render_state *s) {
     snow_transfer_free(s->transfer);
     snow_volume_close(s->volume);
     snow_volume_close(s->ready);
+    free(s->measures);
     free(s->figures);
     if (s->context)
         close_render_context(s->context);
@@ -104,7 +105,8 @@ void render_state_leave_strip(render_state *s) {
                                s->transfer,
                                {0, 0},
                                &s->channels,
-                               layers_legend(&s->layers, s->each_time)});
+                               layers_legend(&s->layers, s->each_time),
+.measures = NULL});
     s->view.strip = s->strip;
 }
 

@@ -4,6 +4,7 @@
 #ifndef SCENE_H
 #define SCENE_H
 
+#include "measure/measures.h"
 #include "options/options.h"
 #include "picture/channels.h"
 #include "picture/layers.h"
@@ -62,6 +63,7 @@ typedef struct render_state {
     uint64_t peak;          /* bytes; for ranks the maximum */
     double load; /* most interesting voxels of a rank, divided by the mean */
     rank_figures *figures; /* of all ranks */
+    measures *measures;    /* of the volume, on the rank that draws them */
 } render_state;
 
 /* Refuses options that ranks do not support.  Returns CONTINUE or an exit
@@ -78,6 +80,10 @@ options render_state_step(const render_state *s, int64_t time);
 /* Opens a time step of a volume in place of the present one, and makes the
  * requested look unless the state has a transfer function already. */
 int render_state_open(render_state *s, const char *path, int64_t time);
+
+/* Measures what is asked in the volume that is open; `everywhere` as in
+ * measures_find. */
+int render_state_measure(render_state *s, bool everywhere);
 
 /* If a look was chosen automatically for a volume without surfaces, it is not
  * shaded, unless shading is requested, or a surface. */

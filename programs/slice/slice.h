@@ -7,6 +7,7 @@
 #ifndef SLICE_H
 #define SLICE_H
 
+#include "measure/measures.h"
 #include "picture/channels.h"
 #include "picture/layers.h"
 #include "picture/render_stats.h"
@@ -38,6 +39,7 @@ typedef struct slice_work {
     snow_transfer *transfer;
     layers layers; /* that lie over it */
     snow_image *image;
+    measures *measures; /* or NULL */
     snow_settings settings;
     render_times times;
     double begin, frame;
@@ -78,6 +80,9 @@ int slice_read(slice_work *w);
 int slice_read_alone(const slice_work *w, int64_t part, slice_work *out);
 void slice_close_alone(slice_work *w);
 int slice_open_colors(slice_work *w);
+
+/* What --measure asks for, in the volume that is read. */
+int slice_measure(slice_work *w);
 
 /* The look without its opacities, which a slice ignores. */
 void slice_describe_colors(const slice_work *w, char *out, size_t size);

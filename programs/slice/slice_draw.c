@@ -192,6 +192,18 @@ static snow_status add_letters(const slice_work *w, snow_overlay *overlay) {
     return status;
 }
 
+/* In each slice those that lie in it. */
+static snow_status add_measures(const slice_work *w, snow_overlay *overlay) {
+    const snow_volume_info *info = snow_volume_get_info(w->volume);
+    snow_status status = SNOW_STATUS_OK;
+    for (int64_t n = 0; n < w->count && status == SNOW_STATUS_OK; n++) {
+        const snow_slice_place *place = &w->places[n];
+        status = measures_draw(w->measures, info, &place->view, place->x,
+                               place->y, place->axis, place->index, overlay);
+    }
+    return status;
+}
+
 snow_status slice_make_overlay(slice_work *w, snow_overlay **out) {
     options opts = w->opts;
     snow_overlay *overlay = NULL;
@@ -202,18 +214,27 @@ snow_status slice_make_overlay(slice_work *w, snow_overlay **out) {
                                        w->transfer,
                                        {0, 0},
                                        w->transfer ? &w->channels : NULL,
-                                       layers_legend(&w->layers, false)};
-    const bool more =
-        w->kind != SLICE_ONE && !w->opts.no_labels && slice_has_colors(w);
+                                       layers_legend(&w->layers, false),
+.measures = NULL};
+    const bool several = w->kind != SLICE_ONE && slice_has_colors(w);
+    const bool more = several && !w->opts.no_labels;
+    if (w->kind == SLICE_ONE) {
+        annotations.measures = w->measures;
+        annotations.axis = w->axis;
+        annotations.index = &w->places[0].index;
+    }
     annotations_find_unit(&opts, w->volume, false, &annotations.info);
     snow_status status =
         annotations_make(&annotations, 0, -1, NULL, w->context, &overlay);
-    if (status == SNOW_STATUS_OK && more && !overlay)
+    if (status == SNOW_STATUS_OK && (more || (several && w->measures)) &&
+        !overlay)
         status = snow_overlay_new(w->context, w->size[0], w->size[1], &overlay);
     if (status == SNOW_STATUS_OK && more)
         status = add_letters(w, overlay);
     if (status == SNOW_STATUS_OK && more && w->kind == SLICE_GRID)
         status = add_numbers(w, overlay);
+    if (status == SNOW_STATUS_OK && several && w->measures)
+        status = add_measures(w, overlay);
     if (status == SNOW_STATUS_OK)
         *out = overlay;
     else

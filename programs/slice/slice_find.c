@@ -422,7 +422,8 @@ int slice_leave_strip(slice_work *w) {
                                w->transfer,
                                {0, 0},
                                &w->channels,
-                               layers_legend(&w->layers, false)});
+                               layers_legend(&w->layers, false),
+.measures = NULL});
     if (!(w->strip > 0))
         return CONTINUE;
     if (w->kind == SLICE_GRID || w->kind == SLICE_ORTHO)

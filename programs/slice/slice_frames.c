@@ -35,6 +35,7 @@ static int make_shots(const slice_work *w, shot_list *out) {
         out->shots[n] = (movie_shot){.path = w->path,
                                      .time = w->opts.time,
                                      .slice = w->places[n].index,
+.axis = w->places[n].axis,
                                      .place = n,
                                      .step = -1};
     return out->shots ? CONTINUE
@@ -59,6 +60,8 @@ static void report(const slice_work *w) {
             w->places[0].index, w->places[w->count - 1].index,
             w->whole.dims[w->axis] - 1, colors, w->count,
             w->count == 1 ? "" : "s", w->size[0], w->size[1], opts->output);
+    if (opts->verbosity >= 0)
+        measures_report(w->measures);
 }
 
 static int draw_shot(void *user, const movie_shot *shot, snow_image **image) {
@@ -77,6 +80,7 @@ static void lend(slice_work *w, shot_renderer *shots) {
     s->whole = s->drawn.whole = w->whole;
     s->transfer = w->transfer;
     s->channels = w->channels;
+    s->measures = w->measures;
     s->layers = w->layers;
     s->view = w->places[0].view;
     s->settings = w->settings;
@@ -102,6 +106,8 @@ int slice_run_frames(slice_work *w) {
     }
     if (done == CONTINUE)
         done = slice_read(w);
+    if (done == CONTINUE)
+        done = slice_measure(w);
     if (done == CONTINUE) {
         report(w);
         lend(w, &shots);

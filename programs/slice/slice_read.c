@@ -1,5 +1,6 @@
 /* slice_read.c - reads slices, what lies over them, and their look. */
 #include "commands/commands.h"
+#include "picture/annotations.h"
 #include "picture/outputs.h"
 #include "picture/warnings.h"
 #include "run/log.h"
@@ -240,6 +241,19 @@ void slice_describe_colors(const slice_work *w, char *out, size_t size) {
     snprintf(out, size, "%.*s%s",
              opacity ? (int)(opacity - text) : (int)strlen(text), text,
              reason ? reason : "");
+}
+
+int slice_measure(slice_work *w) {
+    options own = w->opts;
+    snow_volume_info whole = w->whole;
+    if (w->kind == SLICE_ONE && own.measure) { /* a crop, counted in all */
+        int64_t *crop = own.crop[w->axis];
+        crop[0] -= w->places[0].index;
+        crop[1] = crop[0] + w->whole.dims[w->axis];
+    }
+    annotations_find_unit(&own, w->volume, false, &whole);
+    return measures_find(&own, w->context, w->path, &whole, w->volume, false,
+                         &w->measures);
 }
 
 int slice_read(slice_work *w) {

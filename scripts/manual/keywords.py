@@ -25,7 +25,7 @@ OTHERWISE = {
     "shade": ("shade", "bool | str"), "overlay": ("overlay", "Any"),
     "overlay-look": ("overlay_look", "Any"), "mask": ("mask", "Path"),
     "label-table": ("label_table", "Path"), "tf": (None, ""),
-    "title": (None, ""), "annotate": (None, ""), "box": (None, ""),
+    "title": (None, ""), "annotate": (None, ""), "box": (None, ""), "measure": (None, ""),
     "as": (None, ""), "series": ("series", "str | int"),
 }
 LOOK = ("preset", "colormap", "points", "gradient_points", "window", "range",

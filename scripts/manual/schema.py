@@ -61,6 +61,7 @@ TYPES = {
     "z_scale": number(),
     "kernel": any_of(string(pattern="^(auto|tent|gauss|bspline|box)(:[2-9])?$")),
     "legend": any_of({"type": "boolean"}, string()),
+    "measure": string(pattern="^ *(line|angle|ellipse) "),
     "annotate": any_of(enum("step", "time"), string(pattern="^time=")),
     "material": array([share(), share(), share(), number(minimum=0, maximum=1000)],
                       4),

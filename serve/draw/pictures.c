@@ -50,7 +50,8 @@ static int annotate(drawing *d, const paint_given *painted,
         s->transfer,
         {painted->range[0], painted->range[1]},
         &s->channels,
-        layers_legend(&s->layers, false)};
+        layers_legend(&s->layers, false),
+        .measures = s->measures};
     return check_status(s->context,
                         annotations_make(&annotations, s->view.azimuth, -1,
                                          image, s->context, out));

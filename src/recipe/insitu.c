@@ -39,6 +39,7 @@ static snow_status check_foreign(snow_context *context,
     const snow_volume_options *data = &recipe->data;
     const char *foreign = recipe->depth      ? "depth"
                           : recipe->axis     ? "axis"
+                          : recipe->measure  ? "measure"
                           : recipe->overlay  ? "overlay"
                           : recipe->channels ? "channel"
                           : recipe->steps    ? "time"

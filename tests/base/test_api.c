@@ -93,6 +93,7 @@ static void a_file_that_is_missing_makes_no_image(void **state) {
     X(snow_image_options)      \
     X(snow_image_difference)   \
     X(snow_slice_place)        \
+    X(snow_measure)            \
     X(snow_ranks_options)      \
     X(snow_ranks_needs)        \
     X(snow_comm_ops)           \
