@@ -7,9 +7,9 @@
  * means and weights are rounded. */
 #define BEYOND 8
 
-/* Bits of two lines, for each plane. */
+/* Bits of two lines, for each plane, and those of a row. */
 static size_t bits_bytes(const snow_value_store *s) {
-    size_t words = snow_value_words(s) * 2 * (SNOW_VALUE_RUNS + 1);
+    size_t words = snow_value_words(s) * (2 * (SNOW_VALUE_RUNS + 1) + 1) + 2;
     return snow_align(words * sizeof(uint32_t));
 }
 
@@ -24,23 +24,21 @@ size_t snow_value_cells_bytes(const snow_value_store *store,
 }
 
 /* Cells from the bits of the lines above and below, in a row of the masks and
- * `copies` more. */
-static void write_cells(snow_value_store *s, int interval, int64_t slice,
-                        int64_t row, int copies, const uint32_t *above,
-                        const uint32_t *below) {
+ * `copies` more; `cells` is room for one. */
+static void write_cells(snow_value_store *s, const snow_value_loops *loops,
+                        int interval, int64_t slice, int64_t row, int copies,
+                        const uint32_t *above, const uint32_t *below,
+                        uint32_t *cells) {
     size_t words = snow_value_words(s),
            bits = (size_t)s->columns + 2 * (size_t)s->margin - 1;
     uint32_t *out = s->masks + snow_value_mask_at(s, interval, slice) +
                     s->mask_rows + (size_t)(row + s->margin + SNOW_VALUE_ROWS);
-    for (size_t w = 0; w < words; w++, out += s->mask_rows) {
-        uint32_t here = above[w] | below[w];
-        uint32_t next = w + 1 < words ? above[w + 1] | below[w + 1] : 0;
-        uint32_t cells = here | here >> 1 | next << 31;
-        if (32 * w + 32 > bits)
-            cells &= 32 * w < bits ? ~UINT32_C(0) >> (32 * w + 32 - bits) : 0;
+    loops->cells(above, below, words, cells);
+    for (size_t w = bits / 32; w < words; w++)
+        cells[w] &= w == bits / 32 ? (UINT32_C(1) << bits % 32) - 1 : 0;
+    for (size_t w = 0; w < words; w++, out += s->mask_rows)
         for (int n = 0; n <= copies; n++)
-            out[n] = cells;
-    }
+            out[n] = cells[w];
 }
 
 snow_transparent_interval
@@ -91,8 +89,8 @@ typedef struct marker {
     bool by_stored;
     snow_value_stored_range ranges[SNOW_VALUE_RUNS]; /* of the intervals */
     int16_t *line;
-    uint64_t *stored; /* a bit for each voxel of a row */
-    uint32_t *bits;   /* of two lines */
+    uint32_t *bits;  /* of two lines */
+    uint32_t *cells; /* of a row, in whole words of 64 */
 } marker;
 
 /* Counts what is seen of a row of the band, and copies it where rows are
@@ -106,7 +104,16 @@ static void take_row(marker *m, int64_t row, const unsigned char *stored) {
                (size_t)s->columns * size);
     if (m->store->counted_ranges)
         s->seen[m->band] +=
-            snow_value_count_stored(s, m->params, stored, m->stored);
+            snow_value_count_stored(s, m->params, stored, m->cells);
+}
+
+/* Asks memory for the same row of the next slice. */
+static void ask_ahead(const marker *m, const unsigned char *stored) {
+    const size_t ahead = m->lines.slice[0].ahead;
+    const size_t bytes =
+        (size_t)m->store->columns * snow_type_size(m->params->quantizer->type);
+    for (size_t n = 0; ahead && n < bytes; n += 64)
+        __builtin_prefetch(stored + ahead + n);
 }
 
 /* Marks a row, or one beyond the first or last of the volume. */
@@ -118,10 +125,11 @@ static void mark_row(marker *m, int64_t row, uint32_t *bits) {
         return;
     }
     const unsigned char *stored = snow_value_lines_stored(&m->lines, row);
+    ask_ahead(m, stored);
     for (int interval = 0; interval < s->interval_count;
          interval++, bits += snow_value_words(s))
         snow_value_mark_stored(s, m->params, &m->ranges[interval], interval,
-                               stored, m->stored, bits);
+                               stored, bits);
     if (row / SNOW_VALUE_BAND == m->band)
         take_row(m, row, stored);
 }
@@ -137,9 +145,9 @@ static void mark_slice(marker *m, int64_t slice, int64_t first, int64_t end) {
         mark_row(m, row, below);
         for (int n = 0; row > first && n < snow_value_planes(s); n++) {
             bool top = row == 0, bottom = row == s->rows;
-            write_cells(s, n, slice, top ? -1 - out : row - 1,
+            write_cells(s, m->loops, n, slice, top ? -1 - out : row - 1,
                         (top || bottom) ? out : 0, above + (size_t)n * words,
-                        below + (size_t)n * words);
+                        below + (size_t)n * words, m->cells);
         }
     }
 }
@@ -151,8 +159,8 @@ static void begin_marker(marker *m, int64_t low, int64_t high, void *scratch) {
     unsigned char *at = scratch;
     m->loops = snow_value_loops_of(m->params->isa);
     m->bits = (uint32_t *)scratch;
+    m->cells = m->bits + snow_value_words(s) * 2 * (SNOW_VALUE_RUNS + 1);
     m->line = (int16_t *)(void *)(at + bits_bytes(s));
-    m->stored = (uint64_t *)(void *)m->line;
     m->by_stored = snow_value_store_by_stored(m->params);
     for (int interval = 0; interval < s->interval_count && m->by_stored;
          interval++)

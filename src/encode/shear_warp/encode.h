@@ -15,10 +15,14 @@ typedef struct snow_value_loops {
                     snow_transparent_interval interval, uint32_t *out);
     int16_t *(*pack)(const int16_t *line, const uint32_t *bits, size_t words,
                      int16_t *out);
-    void (*outside_bytes)(const unsigned char *stored, size_t count,
-                          snow_value_stored_range range, uint64_t *out);
-    void (*outside_words)(const unsigned char *stored, size_t count,
-                          snow_value_stored_range range, uint64_t *out);
+    void (*outside_bytes)(const unsigned char *stored, size_t count, int by,
+                          snow_value_stored_range range, uint32_t *out);
+    void (*outside_words)(const unsigned char *stored, size_t count, int by,
+                          snow_value_stored_range range, uint32_t *out);
+    /* Bits that are set; cells of 2x2 voxels from the bits of two lines. */
+    int64_t (*count)(const uint32_t *bits, size_t words);
+    void (*cells)(const uint32_t *above, const uint32_t *below, size_t words,
+                  uint32_t *out);
 } snow_value_loops;
 
 const snow_value_loops *snow_value_loops_of(snow_isa isa);
@@ -34,17 +38,17 @@ static inline size_t snow_value_words(const snow_value_store *s) {
 }
 
 /* Marks the quantized values of a line that are outside of an interval, which
- * `range` is of, from a row of stored values; `room` for a bit of each. */
+ * `range` is of, from a row of stored values. */
 void snow_value_mark_stored(const snow_value_store *store,
                             const snow_value_store_params *params,
                             const snow_value_stored_range *range, int interval,
-                            const unsigned char *stored, uint64_t *scratch,
-                            uint32_t *bits);
+                            const unsigned char *stored, uint32_t *bits);
 
-/* The stored values of a row that are in one of the ranges of what is seen. */
+/* The stored values of a row that are in one of the ranges of what is seen;
+ * `bits` is room for the bits of a line. */
 int64_t snow_value_count_stored(const snow_value_store *store,
                                 const snow_value_store_params *params,
-                                const unsigned char *stored, uint64_t *scratch);
+                                const unsigned char *stored, uint32_t *bits);
 
 /* The bytes of an encoding that is whole. */
 void snow_value_store_add_up(snow_value_store *store);

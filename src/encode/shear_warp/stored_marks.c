@@ -51,17 +51,6 @@ snow_value_stored_range_of(const snow_quantizer *quantizer,
 
 /* --- rows ----------------------------------------------------------------- */
 
-/* The words of a row, moved on by `margin` bits (1 to 31), to `words` words. */
-static void place_bits(const uint32_t *from, size_t count, int margin,
-                       uint32_t *bits, size_t words) {
-    size_t own = (count + 31) / 32;
-    bits[0] = from[0] << margin;
-    for (size_t w = 1; w < own; w++)
-        bits[w] = from[w] << margin | from[w - 1] >> (32 - margin);
-    for (size_t w = own; w < words; w++)
-        bits[w] = w == own ? from[w - 1] >> (32 - margin) : 0;
-}
-
 /* Whether the number beyond a side is outside of an interval: that of a voxel,
  * of which the one inside is `step` on. */
 static bool is_beyond_outside(const snow_quantizer *quantizer,
@@ -77,62 +66,64 @@ static bool is_beyond_outside(const snow_quantizer *quantizer,
     return beyond < interval.first || beyond > interval.last;
 }
 
-/* A bit for each native of a row that is not in a range. */
+/* Sets `count` bits from `first` on. */
+static void set_bits(uint32_t *bits, size_t first, size_t count) {
+    for (size_t n = first; n < first + count; n++)
+        bits[n / 32] |= UINT32_C(1) << n % 32;
+}
+
+/* A bit for each native of a row that is not in a range, from bit `by` on; to
+ * so many words. */
 static void find_outside(const snow_value_store *s,
                          const snow_value_store_params *params,
                          const snow_value_stored_range *range,
-                         const unsigned char *stored, uint64_t *out) {
+                         const unsigned char *stored, int by, uint32_t *out,
+                         size_t words) {
     const snow_value_loops *loops = snow_value_loops_of(params->isa);
     const size_t count = (size_t)s->columns;
-    if (range->none)
-        memset(out, 0xff, (count + 63) / 64 * sizeof *out);
-    else if (snow_type_size(params->quantizer->type) == 1)
-        loops->outside_bytes(stored, count, *range, out);
+    const size_t made = (count + (size_t)by + 63) / 64 * 2;
+    if (made < words)
+        memset(out + made, 0, (words - made) * sizeof *out);
+    if (range->none) {
+        memset(out, 0, made * sizeof *out);
+        set_bits(out, (size_t)by, count);
+    } else if (snow_type_size(params->quantizer->type) == 1)
+        loops->outside_bytes(stored, count, by, *range, out);
     else
-        loops->outside_words(stored, count, *range, out);
-    if (count % 64)
-        out[count / 64] &= ~UINT64_C(0) >> (64 - count % 64);
+        loops->outside_words(stored, count, by, *range, out);
 }
 
 void snow_value_mark_stored(const snow_value_store *s,
                             const snow_value_store_params *params,
                             const snow_value_stored_range *range, int interval,
-                            const unsigned char *stored, uint64_t *scratch,
-                            uint32_t *bits) {
-    const size_t count = (size_t)s->columns;
+                            const unsigned char *stored, uint32_t *bits) {
     const int64_t size = (int64_t)snow_type_size(params->quantizer->type);
     const int64_t step = s->columns > 1;
-    find_outside(s, params, range, stored, scratch);
-    place_bits((const uint32_t *)(const void *)scratch, count, s->margin, bits,
-               snow_value_words(s));
+    const size_t margin = (size_t)s->margin, count = (size_t)s->columns;
+    find_outside(s, params, range, stored, s->margin, bits,
+                 snow_value_words(s));
     for (int end = 0; end < 2; end++) {
         int64_t column = end ? s->columns - 1 : 0, in = end ? -step : step;
+        const size_t at = (size_t)column + margin;
         const unsigned char *side = stored + column * size;
         const unsigned char *next = side + in * size;
         const bool same =
             side[0] == next[0] && (size == 1 || side[1] == next[1]);
-        if (same ? scratch[column / 64] >> column % 64 & 1
+        if (same ? bits[at / 32] >> at % 32 & 1
                  : is_beyond_outside(params->quantizer, stored, column, in,
-                                     s->intervals[interval])) {
-            /* Sets `count` bits, up to 31, from bit `first` on. */
-            const size_t first = end ? (size_t)s->margin + count : 0;
-            uint64_t some = ((UINT64_C(1) << s->margin) - 1) << first % 32;
-            bits[first / 32] |= (uint32_t)some;
-            if (some >> 32)
-                bits[first / 32 + 1] |= (uint32_t)(some >> 32);
-        }
+                                     s->intervals[interval]))
+            set_bits(bits, end ? margin + count : 0, margin);
     }
 }
 
 int64_t snow_value_count_stored(const snow_value_store *s,
                                 const snow_value_store_params *params,
-                                const unsigned char *stored,
-                                uint64_t *scratch) {
+                                const unsigned char *stored, uint32_t *bits) {
+    const size_t words = ((size_t)s->columns + 63) / 64 * 2;
     int64_t outside = 0;
     for (int n = 0; n < s->counted_ranges; n++) {
-        find_outside(s, params, &s->counted[n], stored, scratch);
-        for (int64_t word = 0; word < (s->columns + 63) / 64; word++)
-            outside += __builtin_popcountll(scratch[word]);
+        find_outside(s, params, &s->counted[n], stored, 0, bits, words);
+        outside += snow_value_loops_of(params->isa)->count(bits, words);
     }
     return s->counted_ranges * s->columns - outside;
 }
