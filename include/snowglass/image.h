@@ -40,29 +40,34 @@ SNOW_RECORD(snow_image_options);
  * without `overwrite`), BAD_USAGE (what the format cannot hold), STOPPED. */
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
     const snow_image_options *options);
+
 /* What snow_image_save would refuse, by path, size and options. */
 SNOW_API snow_status snow_image_check_path(
     snow_context *context, const char *path, bool overwrite);
 SNOW_API snow_status snow_image_check(snow_context *context, const char *path,
     int width, int height, const snow_image_options *options);
+
 /* Of a path's suffix: the most bits a channel, 0 for floats, -1 for none;
  * whether it holds a depth. Suffix `index` (NULL past the end), and if built.
  */
 SNOW_API int snow_image_format_bits(const char *path);
 SNOW_API bool snow_image_format_has_depth(const char *path);
 SNOW_API const char *snow_image_format_suffix(size_t index, bool *built);
+
 /* width * height * 3 bytes, the levels of a PNG of 8 bits on that background;
  * or with all options, on black unless `flatten`. */
 SNOW_API void snow_image_to_rgb8(
     const snow_image *image, const double background[3], unsigned char *rgb);
 SNOW_API snow_status snow_image_to_rgb8_with(const snow_image *image,
     const snow_image_options *options, unsigned char *rgb);
+
 /* Reads PNG, WebP, JPEG, NPY, PFM, EXR, TIFF, from a file or bytes, to four
  * channels; alpha is 1 where there is none. Errors: BAD_INPUT. */
 SNOW_API snow_status snow_image_load(
     snow_context *context, const char *path, snow_image **out);
 SNOW_API snow_status snow_image_load_memory(snow_context *context,
     const char *name, const void *bytes, size_t size, snow_image **out);
+
 /* Over four premultiplied channels, three where one is of PFM or JPEG. */
 typedef struct snow_image_difference {
     size_t size;

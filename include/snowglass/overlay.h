@@ -27,6 +27,7 @@ SNOW_API snow_status snow_view_orientation(snow_context *context,
     const snow_volume_info *info, const snow_view *view, char letters[4][4]);
 SNOW_API snow_status snow_overlay_orientation(
     snow_overlay *overlay, const snow_volume_info *info, const snow_view *view);
+
 /* At the right, sides of at least 128 pixels: the colours with ticks, and
  * opacity as a line. `unit` may be NULL. `range`, of pictures without opacity:
  * values of the first and the last colour; else NULL. Bar 0 is the lowest. */

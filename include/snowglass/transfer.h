@@ -19,6 +19,7 @@ typedef struct snow_color_point {
 typedef struct snow_opacity_point {
     double value, opacity; /* data value or gradient magnitude; 0 to 1 */
 } snow_opacity_point;
+
 /* From copied control points, of each kind one or more, values not falling. */
 SNOW_API snow_status snow_transfer_new(snow_context *context,
     const snow_color_point *colors, size_t color_count,
@@ -28,6 +29,7 @@ SNOW_API void snow_transfer_free(snow_transfer *transfer);
 /* Joins points, all above 0, by logarithms; 0 and below is transparent. */
 SNOW_API snow_status snow_transfer_set_log(snow_transfer *transfer);
 SNOW_API bool snow_transfer_is_log(const snow_transfer *transfer);
+
 /* Factors by magnitudes of central differences, in data units per unit of the
  * world, of points (copied; 0: none). That of a magnitude (NaN: the last). */
 SNOW_API snow_status snow_transfer_set_gradient_opacity(
@@ -83,6 +85,7 @@ SNOW_RECORD(snow_look);
  * (unknown name, with the list; bad points), STOPPED. */
 SNOW_API snow_status snow_transfer_new_for_volume(
     const snow_volume *volume, const snow_look *look, snow_transfer **out);
+
 /* "grey 72..213; opacity 0 at 72, 0.4 at 213 (from the histogram)"; straight
  * colour and opacity of a data value, zeros for NaN; values of both ends; the
  * points in use, in data units, which stay the function's. */
@@ -93,6 +96,7 @@ SNOW_API void snow_transfer_domain(
     const snow_transfer *transfer, double *low, double *high);
 SNOW_API snow_status snow_transfer_get_look(
     const snow_transfer *transfer, snow_look *out);
+
 /* Label `index` (from 0), rising, of what is drawn as labels; else NULL. */
 SNOW_API const snow_label *snow_transfer_label(const snow_transfer *, size_t);
 

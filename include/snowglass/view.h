@@ -37,14 +37,17 @@ SNOW_RECORD(snow_view);
  * is; +z is up, for z sides +y. Other fields have their defaults. */
 SNOW_API snow_status snow_view_from_name(
     snow_context *context, const char *name, snow_view *out);
+
 /* The usual one of a volume (docs/output.md), into a record that snow_view_init
  * has begun; its name (NULL), and what a name means for a volume: axial,
  * coronal, sagittal, front and back are other sides of a patient. */
 SNOW_API snow_status snow_view_default(const snow_volume *, snow_view *out);
 SNOW_API const char *snow_view_name_for(
     const snow_volume_info *info, const char *name);
+
 /* Name of view `index` (from 0); NULL past the end. */
 SNOW_API const char *snow_view_name(size_t index);
+
 /* The zoom at which a step of the smallest spacing is one pixel. */
 SNOW_API double snow_view_zoom_for_voxels(const snow_volume *, int w, int h);
 
