@@ -18,7 +18,7 @@ import dicom_sets
 from dicom_sets import (RAS, ExplicitVRBigEndian, ExplicitVRLittleEndian,
                         ImplicitVRLittleEndian, blank, fill, holds, packed,
                         pydicom, run_lengths, write)
-from pydicom.pixel_data_handlers.util import convert_color_space
+from pydicom.pixel_data_handlers.util import apply_color_lut, convert_color_space
 from pydicom.uid import JPEG2000Lossless, JPEGBaseline8Bit
 
 try:
@@ -807,7 +807,7 @@ if GDCM and Image:
 
 
 def palette(first=0, count=256, bits=16, words=True, **tags):
-    """Of numbers of colours, and the brightness of these."""
+    """Of numbers of colours, and these as red, green, blue of 0 to 255."""
     numbers = oracle.sample(tags.pop("dtype", "u1"), (7, 5))
     data = image(numbers, (0, 0, 0), PhotometricInterpretation="PALETTE COLOR",
                  **tags)
@@ -826,10 +826,19 @@ def palette(first=0, count=256, bits=16, words=True, **tags):
         setattr(data, f"{name}PaletteColorLookupTableData", raw)
         data[f"{name}PaletteColorLookupTableData"].VR = "OW"
     at = np.clip(numbers.astype(int) - first, 0, count - 1)
-    most = 65535 if bits == 16 else 255
-    light = sum(w * t[at].astype(float) / most
-                for w, t in zip((0.299, 0.587, 0.114), tables))
-    return data, np.floor(light * 255 + 0.5)[None]
+    colours = np.stack([table[at] for table in tables])
+    if bits == 16:
+        theirs = apply_color_lut(data.pixel_array, data)
+        assert order == ">" or (np.moveaxis(theirs, -1, 0) == colours).all()
+        colours = np.floor(colours / 257 + 0.5)
+    return data, colours[:, None]
+
+
+def expect_palette(colours, name):
+    for channel in range(3):
+        oracle.expect("palette.dcm", colours[channel], grid((0.5, 0.75, 9), (0, 0, 0)),
+                      ["--channel", channel], dtype="u1", unit="mm",
+                      name=f"{name} {channel}")
 
 
 for what in ({}, {"bits": 8}, {"bits": 8, "words": False},
@@ -838,16 +847,13 @@ for what in ({}, {"bits": 8}, {"bits": 8, "words": False},
              {"dtype": "i2", "first": -900, "count": 2000},
              {"syntax": ExplicitVRBigEndian, "dtype": "u2"},
              {"syntax": ExplicitVRBigEndian, "bits": 8, "words": False}):
-    data, light = palette(**what)
+    data, colours = palette(**what)
     write("palette.dcm", data)
-    oracle.expect("palette.dcm", light, grid((0.5, 0.75, 9), (0, 0, 0)),
-                  dtype="u1", unit="mm", name=f"palette {what}")
-oracle.says("palette", "palette.dcm", "their brightness is used")
-data, light = palette()
+    expect_palette(colours, f"palette {what}")
+data, colours = palette()
 data.RescaleSlope, data.RescaleIntercept = 2, -5  # of no meaning here
 write("palette.dcm", data)
-oracle.expect("palette.dcm", light, grid((0.5, 0.75, 9), (0, 0, 0)),
-              dtype="u1", name="palette with a slope")
+expect_palette(colours, "palette with a slope")
 for change, what in (
         (lambda d: setattr(d, "GreenPaletteColorLookupTableDescriptor",
                            [255, 0, 16]), "tables differ in length"),

@@ -18,7 +18,7 @@
  *           segments.c those of a segmentation: a volume of labels
  *           suv.c      the units of PET and of doses
  *     |
- *   pixels  palette.c  the brightness of palette colours
+ *   pixels  palette.c  palette colours
  *           pixels.c   a frame's words, plain or compressed
  *           codec.c    the headers of compressed ones, checked before GDCM
  *           entropy.c  the codes of JPEG, all of which must be there
@@ -420,12 +420,12 @@ snow_status snow_dicom_read_words(dicom_reader *reader,
 
 /* --- palette.c ------------------------------------------------------------ */
 
-/* Brightness, 0 to 255 in whole steps, of `count` stored values from `first`
- * on; values outside have that of the nearest. */
+/* Red, green and blue, each of `count` stored values from `first` on; values
+ * outside have the colour of the nearest. */
 typedef struct dicom_palette {
     int64_t first;
     size_t count;
-    float *levels; /* of the context; NULL: no palette */
+    unsigned char *levels; /* of the context; NULL: no palette */
 } dicom_palette;
 
 /* Reads the palette of a file that has one.  Errors: SNOW_STATUS_BAD_INPUT

@@ -1,16 +1,14 @@
-/* formats/dicom/palette.c - the brightness of palette colours (PS3.3,
- * C.7.6.3.1.5 and .6): three tables, of red, green and blue, one after another
- * in the file, of bytes or of words.
+/* formats/dicom/palette.c - palette colours (PS3.3, C.7.6.3.1.5 and .6): three
+ * tables, of red, green and blue, one after another in the file, of bytes or of
+ * words.
  *
  *   stored value   .. first  first + 1  ...  first + count - 1 ..
  *   entry          0  0      1               count - 1          count - 1
  *
- * Colours are not used as such: a pixel gets the value 0.299 R + 0.587 G +
- * 0.114 B, from 0 to 255, like Y of YBR_FULL. */
+ * The volume has three channels, as of RGB, of 0 to 255. */
+#include "base/minmax.h"
 #include "formats/bytes/number.h"
 #include "formats/dicom/dicom.h"
-
-#include <string.h>
 
 #define DESCRIPTOR 0x00281101u /* of red; green and blue follow it */
 #define TABLE 0x00281201u
@@ -29,7 +27,7 @@ static uint16_t word_of(const dicom_reader *reader, const unsigned char *at) {
 
 static snow_status fail_palette(dicom_reader *reader, const char *what) {
     return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
-                     "its values are palette colours, %s; convert it to grey",
+                     "its values are palette colours, %s; convert it to RGB",
                      what);
 }
 
@@ -48,11 +46,11 @@ static snow_status read_shape(dicom_reader *reader, const dicom_image *image,
     return fail_palette(reader, "with entries of other than 8 or 16 bits");
 }
 
-/* Adds `share` of a table's entries, scaled to 0 to 1.  Tables of 8 bits are
- * written as bytes or, by some programs, as words. */
-static snow_status add_table(dicom_reader *reader, uint32_t color,
-                             const palette_shape *shape, double share,
-                             unsigned char *bytes, float *levels) {
+/* Reads a table, scaled to 0 to 255.  Tables of 8 bits are written as bytes or,
+ * by some programs, as words. */
+static snow_status read_table(dicom_reader *reader, uint32_t color,
+                              const palette_shape *shape, unsigned char *bytes,
+                              unsigned char *levels) {
     const dicom_place place = {0, 0, TABLE + color};
     size_t count = shape->count;
     size_t got = snow_dicom_value(reader, place, bytes, 2 * count);
@@ -64,25 +62,15 @@ static snow_status add_table(dicom_reader *reader, uint32_t color,
                             "stored in segments, which are not supported");
     if (!words && (shape->bits == 16 || got < count))
         return fail_palette(reader, "of which some are missing");
-    double most = shape->bits == 16 ? 65535 : 255;
+    const unsigned most = shape->bits == 16 ? 65535 : 255;
     for (size_t i = 0; i < count; i++) {
         /* bytes that were written as words have their byte order */
         size_t at = reader->big_endian && !words ? i ^ 1 : i;
-        double entry =
+        unsigned entry =
             words ? word_of(reader, bytes + 2 * i) : bytes[at < got ? at : i];
-        levels[i] += (float)(share * (entry < most ? entry : most) / most);
+        entry = SNOW_MIN(entry, most);
+        levels[i] = (unsigned char)((entry * 255 + most / 2) / most);
     }
-    return SNOW_STATUS_OK;
-}
-
-static snow_status fill_levels(dicom_reader *reader, const palette_shape *shape,
-                               unsigned char *bytes, float *levels) {
-    static const double shares[3] = {0.299, 0.587, 0.114};
-    memset(levels, 0, shape->count * sizeof *levels);
-    for (uint32_t color = 0; color < 3; color++)
-        SNOW_TRY(add_table(reader, color, shape, shares[color], bytes, levels));
-    for (size_t i = 0; i < shape->count; i++)
-        levels[i] = (float)(int)(levels[i] * 255 + 0.5F);
     return SNOW_STATUS_OK;
 }
 
@@ -96,18 +84,19 @@ snow_status snow_dicom_palette_read(dicom_reader *reader,
         if (all[color].first != all[0].first ||
             all[color].count != all[0].count || all[color].bits != all[0].bits)
             return fail_palette(reader, "whose tables differ in length");
-    float *levels =
-        snow_allocate_array(reader->context, all[0].count, sizeof *levels);
-    unsigned char *bytes =
-        snow_allocate_array(reader->context, all[0].count, 2);
-    snow_status status = levels && bytes
-                             ? fill_levels(reader, &all[0], bytes, levels)
-                             : SNOW_STATUS_NO_MEMORY;
+    const size_t count = all[0].count;
+    unsigned char *levels = snow_allocate_array(reader->context, count, 3);
+    unsigned char *bytes = snow_allocate_array(reader->context, count, 2);
+    snow_status status =
+        levels && bytes ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+    for (uint32_t color = 0; color < 3 && status == SNOW_STATUS_OK; color++)
+        status =
+            read_table(reader, color, &all[0], bytes, levels + color * count);
     snow_release(reader->context, bytes);
     if (status != SNOW_STATUS_OK) {
         snow_release(reader->context, levels);
         return status;
     }
-    *out = (dicom_palette){all[0].first, all[0].count, levels};
+    *out = (dicom_palette){all[0].first, count, levels};
     return SNOW_STATUS_OK;
 }

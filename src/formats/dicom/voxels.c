@@ -5,8 +5,7 @@
  * 16 or 32 (PS3.5, 8.1.1); other bits, such as old overlays, are dropped.
  * Values stay as stored, with one scale for all.  They become floats if there
  * is padding, which becomes NaN, if slices differ in scale, and if slices are
- * interpolated, missing or cut. Palette colours are replaced by their
- * brightness.
+ * interpolated, missing or cut. Palette colours become channels.
  *
  * A file stays open until another is needed. */
 #include "base/minmax.h"
@@ -102,6 +101,10 @@ static void take_row(const decoder *d, const dicom_frame *frame,
     const double *padding = frame->image->padding;
     double slope = d->scales ? frame->slope : 1;
     double intercept = d->scales ? frame->intercept : 0;
+    const unsigned char *levels =
+        d->palette.levels
+            ? d->palette.levels + (size_t)d->channel * d->palette.count
+            : NULL;
     for (int64_t x = 0; x < d->window->count[0]; x++, at += step) {
         uint32_t word = word_at(at, size);
         int64_t bits_of = word >> b.shift & b.mask;
@@ -111,11 +114,11 @@ static void take_row(const decoder *d, const dicom_frame *frame,
         if (pads && ((value >= padding[0] && value <= padding[1]) ||
                      (size == 2 && word == (uint16_t)(int32_t)padding[0])))
             out[x] = NAN;
-        else if (d->palette.levels) {
+        else if (levels) {
             double place = value - (double)d->palette.first;
             double last = (double)(d->palette.count - 1);
             place = place > 0 ? SNOW_MIN(place, last) : 0;
-            out[x] = (double)d->palette.levels[(size_t)place];
+            out[x] = (double)levels[(size_t)place];
         } else
             out[x] = slope * value + intercept;
     }
@@ -151,7 +154,8 @@ static snow_status take_frame(decoder *d, const dicom_frame *frame,
     size_t area = columns * (size_t)image->rows;
     size_t step = d->words.planes ? size : size * samples;
     size_t apart = d->words.planes ? area * size : size;
-    const unsigned char *at = d->bytes + (size_t)d->channel * apart;
+    const unsigned char *at =
+        d->bytes + (samples > 1 ? (size_t)d->channel * apart : 0);
     for (int64_t y = 0; y < w->count[1]; y++) {
         size_t first = (size_t)(top + w->first[1] + y) * columns +
                        (size_t)(left + w->first[0]);
@@ -410,18 +414,14 @@ static bool is_rgb(const dicom_image *image) {
            !strcmp(image->photometric, "YBR_ICT") || snow_dicom_is_ybr(image);
 }
 
-/* Colours are selected with --channel, except palette colours. */
 static snow_status check_colors(snow_context *context,
                                 const dicom_image *image) {
-    if (image->samples != 1 && !is_rgb(image))
+    if (image->samples != 1 && (has_palette(image) || !is_rgb(image)))
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
             "its colours are %.16s with %d values per pixel, which is not "
             "supported; convert it to RGB, for example with gdcmconv",
             image->photometric, image->samples);
-    if (image->samples == 1 && has_palette(image))
-        snow_notify(context, "its values are palette colours; their brightness "
-                             "is used, 0 to 255");
     if (image->more)
         snow_notify(context,
                     "its pixels have %llu bytes more than its rows and "
@@ -462,10 +462,11 @@ static snow_status describe_stack(const dicom_input *input,
     SNOW_TRY(snow_dicom_set_unit(input, stack, options->suv, info));
     SNOW_TRY(warn_lost(context, stack));
     warn_about_volume(context, stack, snow_spacing_given(options));
-    snow_channels_begin(info, image->samples, false);
-    if (image->samples == 3 && is_rgb(image))
+    const int channels = has_palette(image) ? 3 : image->samples;
+    snow_channels_begin(info, channels, false);
+    if (channels == 3)
         snow_channels_are_colors(info);
-    SNOW_TRY(snow_volume_pick_channel(context, options, image->samples, info,
+    SNOW_TRY(snow_volume_pick_channel(context, options, channels, info,
                                       &d->channel));
     return snow_volume_pick_time(context, "volume", options, info);
 }
