@@ -854,6 +854,26 @@ data, colours = palette()
 data.RescaleSlope, data.RescaleIntercept = 2, -5  # of no meaning here
 write("palette.dcm", data)
 expect_palette(colours, "palette with a slope")
+
+# Of entries, of lines between them, and of both once more, which begins anew with
+# the entry before: 4 + 6 + 4, and 2 of another.
+for bits, kind in ((16, "u2"), (8, "u1")):
+    data, _ = palette(count=16, bits=bits, words=bits == 16)
+    far = 60000 if bits == 16 else 250
+    for name, low in (("Red", 3), ("Green", 77), ("Blue", 150)):
+        again = (0, 0) if bits == 16 else (0, 0, 0, 0)
+        parts = [0, 2, low, far - low, 1, 2, low + 99, 1, 5, far, 2, 2, *again, 0, 3, 1, 2, low]
+        setattr(data, f"Segmented{name}PaletteColorLookupTableData",
+                np.array(parts + [0] * (len(parts) % 2), kind).tobytes())
+        data[f"Segmented{name}PaletteColorLookupTableData"].VR = "OW"
+        delattr(data, f"{name}PaletteColorLookupTableData")
+    write("palette.dcm", data)
+    theirs = np.moveaxis(apply_color_lut(data.pixel_array, data), -1, 0)[:, None]
+    expect_palette(np.floor(theirs / (257 if bits == 16 else 1) + 0.5), f"segments of {bits} bits")
+    for length in range(4):  # the first segment, cut
+        data.SegmentedGreenPaletteColorLookupTableData = b"\0\0\2\0\1\0"[:2 * length]
+        write("palette.dcm", data)
+        oracle.refuse("palette.dcm", "of which some are missing")
 for change, what in (
         (lambda d: setattr(d, "GreenPaletteColorLookupTableDescriptor",
                            [255, 0, 16]), "tables differ in length"),
@@ -865,7 +885,7 @@ for change, what in (
          "of which some are missing"),
         (lambda d: (delattr(d, "RedPaletteColorLookupTableData"),
                     setattr(d, "SegmentedRedPaletteColorLookupTableData",
-                            b"\0\0\1\0\2\0")), "stored in segments")):
+                            b"\0\0\1\0\2\0")), "of which some are missing")):
     data, _ = palette()
     change(data)
     write("palette.dcm", data)
