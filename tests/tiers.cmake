@@ -27,7 +27,7 @@ set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
     package_layout package_manual package_pkgconfig package_recipes package_site package_wheel
     package_within wasm_engine wasm_page)
 set(SNOW_LABEL_late
-    catalyst cli_codes cli_report cli_again cli_background cli_bench cli_figures
+    catalyst cli_codes cli_report cli_tutorials cli_again cli_background cli_bench cli_figures
     cli_interrupt cli_limits cli_measurements cli_ranks cli_real
     cli_shear_warp cli_show mpi_comm oracle_amr oracle_cf oracle_damage oracle_dicom oracle_fit
     oracle_hdf5 oracle_mosaic oracle_mrc oracle_netcdf oracle_nibabel oracle_npy

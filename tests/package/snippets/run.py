@@ -35,6 +35,7 @@ REASONS = [
      "builds the sources: as ./dev package debs does, and tests of them"),
     (r".*", r"ssh |srun --pty|https://", "needs other machines"),
     (r".*", r"valgrind ", "needs valgrind"),
+    (r"tutorials/", r".*", "run with its files by scripts/tutorials, a test of the sources"),
     (r".*", r"pip install [.]", "needs scikit-build-core"),
     (r".*", r"mpirun\.mpich", "needs MPICH; the package is of Open MPI"),
     (r"looks\.md", r"light-grey 173", "what the tool prints"),
