@@ -22,7 +22,7 @@ set(SNOW_LABEL_release isa_wasm)
 set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
     isa_neon isa_wasm mpi_bench mpi_clusters mpi_fail mpi_hosts
     mpi_insitu mpi_other mpi_overlay mpi_python mpi_serve mpi_stall
-    package_abi package_cmake package_copies
+    package_abi package_access package_cmake package_copies
     serve_fuzz
     package_layout package_manual package_pkgconfig package_recipes package_site package_wheel
     package_within wasm_engine wasm_page)

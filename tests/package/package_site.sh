@@ -18,7 +18,11 @@ prints '^site: [0-9]{2} pages, [0-9]{4} links, 0 faults$'
 page() { cat "site/$1"; }
 check "it begins with the README" grep -q '<h1 id="snowglass">' site/index.html
 check "pictures are copied" cmp docs/gallery/engine.png site/docs/gallery/engine.png
-check "there are no scripts" [ -z "$(grep -rliE '<script|javascript:' site)" ]
+check "the search alone has scripts" [ \
+    "$(grep -rliE --include='*.html' '<script|javascript:' site)" = site/search.html ]
+check "it knows each page" [ -z "$(cd site && find . -name '*.html' ! -name search.html |
+    sed 's|^[.]/||' | while read -r page; do
+        grep -qF "\"address\":\"$page#" search-index.js || echo "$page"; done)" ]
 check "it has a dark form" grep -q 'prefers-color-scheme: dark' site/site.css
 check "the chart is of the table" grep -qE \
     'Engine, shaded</text><text[^>]*>Snowglass, draft</text><rect[^>]*><text[^>]*>[0-9.]+<' \
@@ -63,8 +67,9 @@ prints ', 0 faults$'
 check "a page shows it" grep -q '<iframe src="../demo/engine.html"' site/docs/demo.html
 check "menus name it" grep -q 'href="docs/demo.html">Try it' site/index.html
 check "it has a volume" grep -q 'data-name="head" data-recipe' site/demo/head.html
-check "scripts are there alone" [ "$(grep -rlE '<script|javascript:' site | sort)" = \
-    "$(printf 'site/demo/%s.html\n' engine head)" ]
+check "scripts are there and in the search alone" [ \
+    "$(grep -rlE --include='*.html' '<script|javascript:' site | sort)" = \
+    "$(printf 'site/%s.html\n' demo/engine demo/head search)" ]
 cat >bin/half <<'END'
 #!/bin/sh
 case $2 in *head*) echo "no room" >&2 && exit 1 ;; esac

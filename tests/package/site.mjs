@@ -1,0 +1,72 @@
+// tests/package/site.mjs - opens every page of the site without a server:
+//
+//   node site.mjs MODULES CHROMIUM SITE [PATTERN]
+//
+// axe-core finds nothing that keeps people out, narrow and light, and of one page in
+// eight also wide and dark, since all have one style; no page is wider than the
+// window; the search finds parts of pages.  PATTERN picks pages by their paths.
+import {createRequire} from 'node:module';
+import {readFileSync, readdirSync} from 'node:fs';
+import {pathToFileURL} from 'node:url';
+import {join, relative} from 'node:path';
+
+const [modules, chromium, site, pattern = ''] = process.argv.slice(2);
+const {chromium: browsers} = createRequire(join(modules, 'x.js'))('playwright-core');
+const axe = readFileSync(join(modules, 'axe-core', 'axe.min.js'), 'utf8');
+const browser = await browsers.launch({executablePath: chromium, args: ['--no-sandbox']});
+const pages = readdirSync(site, {recursive: true, withFileTypes: true})
+    .filter(one => one.name.endsWith('.html'))
+    .map(one => join(one.parentPath ?? one.path, one.name))
+    .filter(path => !relative(site, path).startsWith('demo') && path.match(pattern));
+let failed = 0;
+
+function check(name, good, why = '') {
+    if (!good)
+        failed++;
+    if (!good || why === 'show')
+        console.log(`${good ? 'ok    ' : 'FAILED'} ${name} ${good ? '' : why}`);
+}
+
+/** What axe-core finds in the page that is open, as lines. */
+async function findings(page) {
+    await page.evaluate(axe);
+    const found = await page.evaluate(() => window.axe.run());
+    return found.violations.map(one => `${one.id}: ${one.help}: ` +
+        one.nodes.slice(0, 3).map(node => node.html.slice(0, 120)).join(' | '));
+}
+
+for (const [width, colorScheme, step] of [[400, 'light', 1], [1600, 'dark', 8]]) {
+    const page = await browser.newPage({viewport: {width, height: 900}, colorScheme});
+    for (const path of pages.filter((_, n) => n % step === 0)) {
+        const name = `${relative(site, path)} at ${width}, ${colorScheme}`;
+        await page.goto(pathToFileURL(path).href);
+        const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+        check(name, wide <= width, `is ${wide} wide`);
+        const found = await findings(page);
+        check(name, found.length === 0, found.join('; '));
+    }
+    await page.close();
+}
+
+const page = await browser.newPage();
+await page.goto(pathToFileURL(join(site, 'docs', 'movies.html')).href);
+await page.getByLabel('Search').fill('turntable frames');
+await page.keyboard.press('Enter');
+await page.waitForURL(/search\.html\?q=turntable/);
+const first = page.locator('#found li a').first();
+check('the search finds movies', await page.locator('#found a[href^="docs/movies"]').count() > 0);
+check('and says how many', /^\d+ parts/.test(await page.locator('#told').textContent()));
+const wanted = await first.getAttribute('href');
+await first.click();
+check('a result leads to its part', page.url().endsWith(wanted), page.url());
+await page.goBack();
+check('"back" shows the results', await page.locator('#found li').count() > 1);
+await page.getByRole('searchbox').fill('snow_frame_render');
+check('names of functions are found', await page.locator('#found a[href*="c-api"]').count() > 0);
+await page.getByRole('searchbox').fill('<b>qqqq');
+check('what is not there', /Nothing has/.test(await page.locator('#told').textContent()));
+check('makes no markup', await page.locator('main b').count() === 0);
+check('axe of results', (await findings(page)).length === 0);
+await browser.close();
+console.log(`${pages.length} pages, ${failed} failed`);
+process.exit(failed ? 1 : 0);
