@@ -127,7 +127,7 @@ static void put_attribute(const file5 *f, const unsigned char *b, size_t size) {
     putc(' ', f->out);
     put_name(f->out, (const char *)b + at,
              strnlen((const char *)b + at, (size_t)name));
-    const bool known = is_technical(
+    const bool known = has_technical_number(
         (const char *)b + at, strnlen((const char *)b + at, (size_t)name));
     const unsigned char *kind = b + at + padded(name, pads);
     put_type(f, kind, (size_t)type);

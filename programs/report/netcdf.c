@@ -40,7 +40,7 @@ static bool put_own_name(place *p, bool *known) {
     if (!take_count(p, &length) || length > p->end - p->at)
         return false;
     const char *name = (const char *)p->bytes + p->at;
-    *known = is_technical(name, (size_t)length);
+    *known = has_technical_number(name, (size_t)length);
     put_name(p->out, name, (size_t)length);
     return skip(p, length);
 }

@@ -50,6 +50,10 @@ void report_folder(FILE *out, const char *path);
 /* Whether a word is one of those that formats use, such as MONOCHROME2. */
 bool is_technical(const char *word, size_t length);
 
+/* Whether that is the name of a technical number, as `slope` is, and `id` is
+ * not. */
+bool has_technical_number(const char *name, size_t length);
+
 /* Writes a text if it is made of technical words and numbers alone, else "text
  * of 12 bytes"; and a name in the same way. */
 void put_text(FILE *out, const char *text, size_t length);

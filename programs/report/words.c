@@ -107,6 +107,16 @@ bool is_technical(const char *word, size_t length) {
     return false;
 }
 
+bool has_technical_number(const char *name, size_t length) {
+    static const char *const of_people[] = {"id",     "name",  "NAME",
+                                            "number", "label", "labels"};
+    for (size_t i = 0; i < sizeof of_people / sizeof *of_people; i++)
+        if (strlen(of_people[i]) == length &&
+            memcmp(of_people[i], name, length) == 0)
+            return false;
+    return is_technical(name, length);
+}
+
 static bool is_number(const char *word, size_t length) {
     size_t digits = 0;
     for (size_t i = 0; i < length; i++) {
@@ -181,7 +191,11 @@ static json_t *technical_object(const json_t *from) {
         json_t *value = json_object_iter_value(at);
         char hidden[64];
         if (is_technical(key, strlen(key))) {
-            json_object_set_new(made, key, technical_json(value));
+            json_object_set_new(
+                made, key,
+                json_is_number(value) && !has_technical_number(key, strlen(key))
+                    ? json_string("(number)")
+                    : technical_json(value));
             continue;
         }
         snprintf(hidden, sizeof hidden, "(name %zu of %zu bytes)", n++,

@@ -211,6 +211,7 @@ for library in ("earliest", "latest"):
                                     chunks=(2, 5, 6), compression="gzip", shuffle=True)
         data.attrs["units"] = ALL
         data.attrs["scale_factor"] = 0.5
+        data.attrs["id"] = 76543218
         data.attrs["ADENOIDH"] = [1, 2, 3]
         for n in range(20): # more than fit beside one another
             group.create_dataset(f"zaphod{n}", data=np.zeros(n + 1, "i2"))
@@ -224,7 +225,7 @@ for library in ("earliest", "latest"):
 
 for form in ("NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA", "NETCDF4"):
     with netCDF4.Dataset(path("nc"), "w", format=form) as file:
-        file.quzzle = ALL
+        file.quzzle, file.number = ALL, np.int32(76543218)
         for name, size in (("time", None), ("z", 3), ("zaphod", 4), ("x", 5)):
             file.createDimension(name, size)
         one = file.createVariable("beeblebrox", "f4", ("time", "z", "zaphod", "x"))
@@ -244,6 +245,7 @@ for form in ("NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA", "N
 
 store = zarr.open_group(folder + "/zaphod.zarr", "w")
 store.attrs.update({"quzzle": ALL, "patient": {"id": 76543218, "name": ALL},
+                    "id": 76543218,
                     "multiscales": [{"version": "0.4", "name": ALL,
                                      "axes": [{"name": n, "type": "space"}
                                               for n in "zyx"],
