@@ -198,12 +198,6 @@ static int answer_slice_command(drawing *d, outbox *box, uint64_t client,
     return CONTINUE;
 }
 
-static void read_at(const json_t *tree, int64_t index[3]) {
-    const json_t *at = json_object_get(tree, "at");
-    for (size_t i = 0; i < 3; i++)
-        index[i] = json_integer_value(json_array_get(at, i));
-}
-
 static void put_value(outbox *box, uint64_t client, const int64_t at[3],
                       double value) {
     answer_put(box, client, MESSAGE_PLAIN,
@@ -215,7 +209,7 @@ static void put_value(outbox *box, uint64_t client, const int64_t at[3],
 static int answer_value(drawing *d, outbox *box, uint64_t client,
                         const json_t *tree) {
     int64_t at[3];
-    read_at(tree, at);
+    answer_read_voxel(tree, at);
     put_value(box, client, at, slices_value(d, at));
     return CONTINUE;
 }
@@ -226,30 +220,21 @@ void answer_none(outbox *box, uint64_t client, const json_t *tree) {
     if (what && strcmp(what, "slice") == 0)
         put_no_slice(box, client,
                      json_integer_value(json_object_get(tree, "pane")));
+    if (what && strcmp(what, "probe") == 0)
+        answer_no_probe(box, client, tree);
     if (!what || strcmp(what, "value") != 0)
         return;
-    read_at(tree, at);
+    answer_read_voxel(tree, at);
     put_value(box, client, at, NAN);
-}
-
-/* The size of the page's picture, as far as that is known. */
-static void read_size(const json_t *tree, double size[2]) {
-    const json_t *list = json_object_get(tree, "size");
-    for (size_t i = 0; i < 2; i++) {
-        const double side = json_number_value(json_array_get(list, i));
-        size[i] = side >= 1 && side <= MESSAGE_SIDE ? side : size[i];
-    }
 }
 
 /* {"what": "depth", "x": 0.5, "y": 0.25, "size": [800, 600]}: of the state that
  * was drawn last, in a picture of that size.  The page knows the camera. */
 static int answer_depth(drawing *d, outbox *box, uint64_t client,
                         const json_t *tree) {
-    double depth, size[2] = {d->state.view.width, d->state.view.height};
-    read_size(tree, size);
-    double x = json_number_value(json_object_get(tree, "x"));
-    double y = json_number_value(json_object_get(tree, "y"));
-    if (x < 0 || x > 1 || y < 0 || y > 1 ||
+    double x, y, depth, size[2] = {d->state.view.width, d->state.view.height};
+    answer_read_size(tree, size);
+    if (!answer_read_spot(tree, &x, &y) ||
         pick_depth(d, x, y, size, &depth) != CONTINUE)
         return CONTINUE;
     answer_put(box, client, MESSAGE_PLAIN,
@@ -329,6 +314,8 @@ int answer_question(drawing *d, viewer_state *s, outbox *box,
         {"slice", answer_slice, true},
         {"slice-command", answer_slice_command, true},
         {"value", answer_value, true},
+        {"measures", answer_measures, true},
+        {"probe", answer_probe, true},
         {"depth", answer_depth, false}};
     const char *what =
         json_string_value(json_object_get(question->tree, "what"));

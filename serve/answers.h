@@ -23,6 +23,20 @@ void answer_replaced(const drawing *d, char told[IDENTITY_BYTES], outbox *box);
 /* The step that a simulation has drawn. */
 void answer_step(outbox *box, int64_t step);
 
+/* --- measuring.c ---
+ *
+ * Of questions: the voxel `at`; x and y, whether they are shares of the
+ * picture's sides; the size of the page's picture, as far as that is known. */
+void answer_read_voxel(const json_t *tree, int64_t index[3]);
+bool answer_read_spot(const json_t *tree, double *x, double *y);
+void answer_read_size(const json_t *tree, double size[2]);
+
+/* What is measured; what is at a place, or that nothing is. */
+int answer_measures(drawing *d, outbox *box, uint64_t client,
+                    const json_t *tree);
+int answer_probe(drawing *d, outbox *box, uint64_t client, const json_t *tree);
+void answer_no_probe(outbox *box, uint64_t client, const json_t *tree);
+
 /* --- answers.c ---
  *
  * Sends a tree, which it frees. */

@@ -40,6 +40,7 @@ static const char *const keys[] = {
     "title",
     "annotate",
     "box",
+    "measure",
     "crop",
     "channel",
     "component",

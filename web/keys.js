@@ -9,7 +9,7 @@ export const MODES = ['over', 'mip', 'minip', 'mean', 'sum', 'iso'];
 const TEXTS = [['Drag', 'turn'], ['Shift or middle drag', 'move'], ['Wheel', 'zoom'],
     ['Right drag', 'window, level'], ['Ctrl right drag', 'opacity'],
     ['Ctrl drag', 'light'], ['Double click', 'turn around this point'],
-    ['x', 'three slices'], ['k', 'handles of clip planes'],
+    ['u a e', 'measure: length, angle, ellipse; Esc: no more; Delete: the chosen one'], ['x', 'three slices'], ['k', 'handles of clip planes'],
     ['On a slice', 'drag: where they cross; wheel: next slice; right drag: window, level; ' +
         'Ctrl wheel: zoom; double click: alone'],
     ['Two fingers', 'move and zoom'], ['Arrows', 'as Drag: 5 degrees, Shift: 1'], ['d', 'next kind of drag'],
@@ -67,7 +67,8 @@ function press(event, recipe, page, actions, pointer) {
         actions.view(VIEWS[key - 1]);
     } else {
         const named = {r: 'fit', m: 'mode', p: 'perspective', l: 'letters', ' ': 'play',
-            c: 'command', v: 'movie', s: 'save', x: 'slices', k: 'handles', d: 'drag', z: 'undo', Z: 'redo', '?': 'help'}[key];
+            c: 'command', v: 'movie', s: 'save', x: 'slices', k: 'handles', d: 'drag', z: 'undo', Z: 'redo', '?': 'help',
+            u: 'length', a: 'angle', e: 'ellipse'}[key];
         actions[named]?.();
         return Boolean(named);
     }

@@ -43,7 +43,7 @@ export class Panel {
         this.updates = [];
         this.element.replaceChildren(this.channels.element, this.presets(), this.look(),
             this.colors.element,
-            section('Opacity by gradient', false, this.gradient.element), this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), this.clipping(), this.shading(),
+            section('Opacity by gradient', false, this.gradient.element), this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), this.page.measure.section(this.actions.measure), this.clipping(), this.shading(),
             this.time(), this.labels());
         this.update();
     }

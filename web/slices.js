@@ -261,6 +261,7 @@ class Pane {
         this.line(g, COLORS[info.right[0]], [px, 0, px, py - 9], [px, py + 9, px, height]);
         this.line(g, COLORS[info.down[0]], [0, py, px - 9, py], [px + 9, py, width, py]);
         this.write(g, width, height);
+        this.owner.page.measure?.drawIn(this, g);
     }
 
     line(g, color, ...parts) {

@@ -34,7 +34,7 @@ const shapes = ({times}) => ({
     crop: isList(3, isList(2, isWithin(0, 1e15))),
     range: isOne(isRange, isList(2, value => /^p[\d.]+$/.test(value)), isNamed(['full'])),
     window: isList(2), light: isOne(isNamed(['key', 'head']), isList(2)), shade: isNamed(['phong', 'none']),
-    legend: isOne(isOn, isText), box: isText, 'no-labels': isOn, mask: isOn, overlay: isOn,
+    legend: isOne(isOn, isText), box: isText, measure: isText, 'no-labels': isOn, mask: isOn, overlay: isOn,
     'overlay-look': isText, channel: isOne(isText, isNumber), component: isOne(isText, isNumber),
     slices: value => isRange(value?.range) && isList(3)(value.at)});
 

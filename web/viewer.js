@@ -5,6 +5,7 @@ import {button, make, select} from './controls.js';
 import {ServerEngine} from './engine_server.js';
 import {aimed, unproject} from './camera.js';
 import {MODES, help, listenToKeys} from './keys.js';
+import {MEASURES, Measure} from './measure.js';
 import {Overlay} from './overlay.js';
 import {Panel} from './panel.js';
 import {Pointer, TOOLS} from './pointer.js';
@@ -130,11 +131,20 @@ const actions = {
             {time: ((recipe.keys.time ?? 0) + 1) % page.info.times}), 200);
     },
     drag() {
-        tool.selectedIndex = (tool.selectedIndex + 1) % TOOLS.length;
-        page.tool = tool.value;
+        tool.value = page.tool = TOOLS[(TOOLS.findIndex(([name]) => name === page.tool) + 1) % TOOLS.length][0];
+        measure.take(null);
         say(`A drag ${tool.selectedOptions[0].text}`);
     },
     slices: () => slices.toggle(),
+    /** Another press puts it away. */
+    measure(name) {
+        const own = measure.offered && measure.tool !== name ? name : null;
+        measure.take(own);
+        tool.value = own ?? page.tool;
+    },
+    length: () => actions.measure('line'),
+    angle: () => actions.measure('angle'),
+    ellipse: () => actions.measure('ellipse'),
     handles() {
         if (panel.clips)
             panel.clips.open = !panel.clips.open;
@@ -295,10 +305,12 @@ function returned(touched) {
 }
 
 const slices = new Slices(recipe, page, engine, views);
-const panel = new Panel(recipe, page, engine, actions, slices);
 const pointer = new Pointer(canvas, recipe, page, (x, y) => engine.ask('depth', {x, y, size: [canvas.width, canvas.height]}));
+const measure = page.measure = new Measure(recipe, page, engine, pointer, slices, views);
+measure.leave = () => actions.measure(measure.tool);
+const panel = new Panel(recipe, page, engine, actions, slices);
 const overlay = new Overlay(recipe, page, pointer, slices);
-picture.append(...overlay.elements);
+picture.append(measure.canvas, ...overlay.elements);
 let first = true, fresh = true; // the first state of all, and of a connection
 
 engine.on('closed', reason => say(plain(reason), true));
@@ -389,8 +401,10 @@ recipe.onChange(() => {
     describe();
 });
 
-const tool = select(TOOLS, name => {
-    page.tool = name;
+const tool = select([...TOOLS, ...MEASURES], name => {
+    const own = MEASURES.some(([each]) => each === name);
+    measure.take(own ? name : null);
+    page.tool = own ? page.tool : name;
 });
 const sliced = button('Slices', 'Three slices beside the picture (x)', actions.slices);
 const file = make('input', {type: 'file', onchange: () => shared.take(file.files)});
@@ -419,6 +433,7 @@ document.getElementById('viewer').append(
 listenToKeys(recipe, page, actions, pointer);
 new ResizeObserver(() => {
     overlay.draw();
+    measure.draw();
     if (!first)
         fitWindow();
 }).observe(picture);

@@ -243,10 +243,11 @@ static void forget(drawing *d) {
     free(d->overlay_key);
     free(d->overlay_look_key);
     free(d->share_key);
+    free(d->measure_key);
     mixed_forget(d);
     d->shown.count = 0;
     d->data_key = d->look_key = d->color_key = d->spread_key = NULL;
-    d->plain_key = d->share_key = NULL;
+    d->plain_key = d->share_key = d->measure_key = NULL;
     d->overlay_key = d->overlay_look_key = NULL;
 }
 
@@ -302,6 +303,8 @@ static int apply(drawing *d, const json_t *recipe) {
     d->look_is_new |= overlaid;
     if (done == CONTINUE)
         done = place(d);
+    if (done == CONTINUE)
+        drawing_measure(d);
     done = process_agree(done);
     if (done != CONTINUE)
         forget(d);

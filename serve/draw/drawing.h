@@ -71,6 +71,7 @@ struct drawing {
                            volume that is not here */
     uint32_t followed;  /* the state that the last answer was made for */
     int followed_done;  /* and what came of it */
+    char *measure_key;  /* what the measures are of */
     char *share_key;    /* what the share is of (share.h) */
     double share;
     draw_fn *draw;          /* instead of render_state_draw; or NULL */
@@ -126,6 +127,10 @@ int drawing_restyle(drawing *d);
 int drawing_render(drawing *d, snow_quality quality, int shrink,
                    snow_stop_fn *stop, void *user, snow_image **image,
                    snow_overlay **overlay);
+
+/* What --measure asks for, anew where its words or the volume change; what
+ * cannot be measured in this volume is said, and the picture has none. */
+void drawing_measure(drawing *d);
 
 /* The transfer function of a look for the volume, or its parts. */
 snow_status drawing_new_transfer(drawing *d, const snow_look *look,

@@ -2,15 +2,18 @@
  * drawing.h. */
 #include "commands/commands.h"
 #include "draw/drawing.h"
+#include "draw/kept.h"
 #include "draw/mixed.h"
 #include "draw/ranks.h"
 #include "options/config.h"
 #include "picture/annotations.h"
 #include "picture/paint.h"
 #include "run/log.h"
+#include "run/start.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The smallest side of a draft that is drawn in a hurry. */
@@ -37,6 +40,24 @@ static int useful_shrink(const drawing *d, int shrink) {
            fmin(view->width, view->height) / (1 << shrink) < voxels / 2)
         shrink--;
     return shrink;
+}
+
+void drawing_measure(drawing *d) {
+    static options opts; /* large; one thread draws */
+    render_state *s = &d->state;
+    const char *text = d->opts.measure ? d->opts.measure : "";
+    const char *data = d->data_key ? d->data_key : "";
+    const size_t room = strlen(text) + strlen(data) + 2;
+    char *key = malloc(room);
+    if (key)
+        snprintf(key, room, "%s\n%s", text, data);
+    if (!kept_take_key(&d->measure_key, key) || !process_talks())
+        return;
+    opts = render_state_step(s, d->opts.time);
+    memset(opts.clip, 0, sizeof opts.clip); /* as slices, which show all */
+    (void)measures_find(&opts, s->context, s->path, &s->whole,
+                        process_ranks() == 1 ? drawing_unclipped(d, 0) : NULL,
+                        true, &s->measures);
 }
 
 /* Letters and bars, as `snowglass render` draws them. */

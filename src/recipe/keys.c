@@ -135,7 +135,7 @@ const recipe_key recipe_keys[] = {
     TEXT("title", title),
     MADE("annotate", annotate, annotate, 0, 0, 0),
     KNOWN("box", box, box_name, NULL),
-    TEXT("measure", measure),
+    MADE("measure", measure, measure, 0, 0, 0),
     MADE("threads", int, settings.threads, 1, 4096, 0),
     MADE("deterministic", flag, settings.deterministic, 0, 0, 0),
     NAME("isa", settings.isa, isa_name, snow_isa_from_name),

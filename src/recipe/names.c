@@ -1,6 +1,8 @@
 /* recipe/names.c - texts, and names of values. */
 #include "recipe/kinds.h"
 
+#include <snowglass/overlay.h>
+
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -155,6 +157,25 @@ static bool read_annotate(const recipe_key *key, const json_t *value,
     return read_text(key, value, field, wrong);
 }
 
+/* What does not depend on a volume is checked. */
+static bool read_measure(const recipe_key *key, const json_t *value,
+                         void *field, char wrong[WRONG_BYTES]) {
+    const char *text = json_string_value(value);
+    snow_context *context = NULL;
+    snow_measure one = {.size = sizeof one};
+    snow_status status = snow_context_new(NULL, &context);
+    for (int n = 0; text && status == SNOW_STATUS_OK && (!n || one.kind); n++)
+        status = snow_measure_read(context, text, n, NULL, &one);
+    const bool good = text && status == SNOW_STATUS_OK;
+    char why[WRONG_BYTES];
+    snprintf(why, sizeof why, "measures; %.900s",
+             text ? snow_context_message(context) : "give a text");
+    snow_context_free(context);
+    return good ? read_text(key, value, field, wrong)
+                : recipe_refuse(wrong, why);
+}
+
+const recipe_kind recipe_measure = {read_measure, write_text};
 const recipe_kind recipe_kernel = {read_kernel, write_kernel};
 const recipe_kind recipe_legend = {read_legend, write_legend};
 const recipe_kind recipe_annotate = {read_annotate, write_text};

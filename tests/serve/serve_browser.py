@@ -13,7 +13,7 @@ import urllib.parse
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from viewer_client import (DATA, SHORT, TOOL, Server, check, finish, run_command, skip,
                            write_channels)
-from volumes import nrrd
+from volumes import each, nrrd, placed
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 WEB = os.path.abspath(sys.argv[3])
@@ -175,6 +175,14 @@ def everyday():
     plans.append(("asked", None, [TOOL, *files], ()))
 
 
+def measured():
+    """Uneven voxels in a patient's world, of values that say where they are."""
+    name = os.path.join(shots, "measured.nrrd")
+    nrrd(name, (40, 30, 20), each((40, 30, 20), lambda x, y, z: x + 10 * y + z, "h"),
+         *placed((1, 2, 4), (10, -20, 30)), kind="int16")
+    plan("measures", name, "--opacity", "-1:1,400:1", copies=[PICTURE])
+
+
 HEAD = "phantom:head", "--dims", "64x64x64"  # a page waits for each picture of it
 if SHORT:
     plan("short", *HEAD, copies=[PICTURE])
@@ -187,6 +195,7 @@ else:
     plan("mask", head("head.nrrd", 64, 64, 64)[0], "--mask",
          os.path.join(shots, "head.nrrd"), "--labels", "60-255")
     plan("recipes", *HEAD)
+    measured()
     overlaid()
     mixed()
     filmed()

@@ -11,6 +11,7 @@ import {createServer, request} from 'node:http';
 import {connect} from 'node:net';
 import {readFileSync, writeFileSync} from 'node:fs';
 import {asked, restarted, steps} from './everyday.mjs';
+import {measures} from './measures.mjs';
 
 const [playwright, chromium, folder, ...parts] = process.argv.slice(2);
 const {chromium: browsers} = await import(playwright);
@@ -1385,7 +1386,7 @@ async function more() {
 
 const tools = {answered, check, folder, keys, open, part, rest, slicesRest, wheel};
 const known = {short: first, long: all, more, film, steps: () => steps(tools),
-    restarted: () => restarted(tools), asked: () => asked(tools), embed: embedded, points: manyPoints, mask: masked,
+    restarted: () => restarted(tools), asked: () => asked(tools), measures: () => measures(tools), embed: embedded, points: manyPoints, mask: masked,
     overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, plain: plainChannels, begun, many};
 
 async function run() {
