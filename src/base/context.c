@@ -1,6 +1,6 @@
 /* base/context.c - contexts and their messages. */
 #define _DEFAULT_SOURCE 1 /* madvise */
-#include "base/base.h"
+#include "base/clear.h"
 #include "base/thread_pool.h"
 
 #include <stdarg.h>
@@ -27,6 +27,21 @@ static void *malloc_allocate(void *user, size_t bytes) {
     }
 #endif
     return malloc(bytes);
+}
+
+/* A huge page is cleared as a whole when it is touched, which takes up to five
+ * milliseconds in a virtual machine whose host has to find it. */
+void snow_memory_by_pages(const snow_context *context, void *block) {
+#ifdef MADV_NOHUGEPAGE
+    const size_t page = 4096, first = (size_t)(uintptr_t)block / page + 1;
+    const size_t end = ((uintptr_t)block + snow_block_bytes(block)) / page;
+    if (context->allocator.allocate == malloc_allocate && first < end)
+        (void)madvise((char *)block + (first * page - (uintptr_t)block),
+                      (end - first) * page, MADV_NOHUGEPAGE);
+#else
+    (void)context;
+    (void)block;
+#endif
 }
 
 static void malloc_release(void *user, void *block) {

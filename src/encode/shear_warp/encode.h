@@ -37,6 +37,11 @@ static inline size_t snow_value_words(const snow_value_store *s) {
     return snow_value_line(s->columns, s->margin) / 32;
 }
 
+/* Words of all masks, and of the rows of zeros behind them. */
+static inline size_t snow_value_masks_words(const snow_value_store *s) {
+    return snow_value_mask_at(s, snow_value_planes(s), 0) + SNOW_VALUE_ROWS;
+}
+
 /* Marks the quantized values of a line that are outside of an interval, which
  * `range` is of, from a row of stored values. */
 void snow_value_mark_stored(const snow_value_store *store,

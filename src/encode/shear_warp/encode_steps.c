@@ -5,6 +5,7 @@
 #include "base/thread_pool.h"
 
 #include <stdatomic.h>
+#include <string.h>
 
 typedef struct store_job {
     snow_value_store *store;
@@ -15,6 +16,19 @@ typedef struct store_job {
 
 static void *scratch_of(const store_job *job, int worker) {
     return job->store->scratch + (size_t)worker * job->scratch_bytes;
+}
+
+/* Words of the masks that are cleared at once: 2 MB. */
+#define CLEARED ((size_t)1 << 19)
+
+static void clear_item(void *of, int64_t item, int worker) {
+    const store_job *job = of;
+    const snow_value_store *s = job->store;
+    const size_t first = (size_t)item * CLEARED;
+    const size_t left = snow_value_masks_words(s) - first;
+    (void)worker;
+    memset(s->masks + first, 0,
+           (left < CLEARED ? left : CLEARED) * sizeof *s->masks);
 }
 
 static void cells_item(void *of, int64_t band, int worker) {
@@ -86,6 +100,9 @@ static snow_encoding choose(const snow_value_store *s) {
 
 /* --- the steps ------------------------------------------------------------ */
 
+static int64_t count_clears(const snow_value_store *s) {
+    return (int64_t)((snow_value_masks_words(s) + CLEARED - 1) / CLEARED);
+}
 static int64_t count_bands(const snow_value_store *s) {
     return s->band_count;
 }
@@ -114,6 +131,7 @@ static const struct store_step {
     snow_status (*before)(store_job *job); /* may be NULL */
     bool quick;                            /* is not worth being divided */
 } steps[] = {
+    {count_clears, clear_item, NULL, false},
     {count_bands, cells_item, NULL, false},
     {count_eights, coarse_item, NULL, true},
     {count_bands, active_item, choose_encoding, false},
@@ -123,13 +141,13 @@ static const struct store_step {
 };
 
 static int count_steps(const snow_value_store *s) {
-    return s->in_place ? 2 : (int)(sizeof steps / sizeof *steps);
+    return s->in_place ? 3 : (int)(sizeof steps / sizeof *steps);
 }
 
 int64_t snow_value_store_left(const snow_value_store *s) {
     int64_t left = 0;
     for (int n = s->step; n < count_steps(s); n++)
-        left += steps[n].quick ? 0 : s->band_count;
+        left += steps[n].quick ? 0 : steps[n].count(s);
     return left > s->made ? left - s->made : 0;
 }
 
@@ -186,7 +204,9 @@ snow_status snow_value_store_encode(snow_value_store *s,
                                     const snow_value_store_params *params) {
     snow_monitor *monitor = s->context->monitor;
     SNOW_TRY(snow_value_store_begin(s, params));
-    snow_monitor_next(monitor, SNOW_STAGE_ENCODE, 0, 0.5);
+    snow_monitor_next(monitor, SNOW_STAGE_ENCODE, 0, 0.1);
+    SNOW_TRY(snow_value_store_go_on(s, params, count_clears(s)));
+    snow_monitor_next(monitor, SNOW_STAGE_ENCODE, 0.1, 0.5);
     SNOW_TRY(snow_value_store_go_on(s, params, s->band_count));
     snow_monitor_next(monitor, SNOW_STAGE_ENCODE, 0.5, 1);
     return snow_value_store_go_on(s, params, snow_value_store_left(s));

@@ -10,10 +10,7 @@
 
 static snow_status reserve_masks(snow_value_store *s) {
     size_t slices = (size_t)snow_value_planes(s) * (size_t)s->slices;
-    size_t masks = slices * s->mask_words * s->mask_rows;
-    SNOW_TRY(SNOW_RESERVE(s->context, s->masks, 0, masks + SNOW_VALUE_ROWS));
-    SNOW_TRY(snow_clear(s->context, s->masks,
-                        (masks + SNOW_VALUE_ROWS) * sizeof *s->masks));
+    SNOW_TRY(SNOW_RESERVE(s->context, s->masks, 0, snow_value_masks_words(s)));
     size_t coarse = s->mask_words * s->coarse_words;
     SNOW_TRY(SNOW_RESERVE(s->context, s->eights, 0,
                           (size_t)snow_value_planes(s) *
@@ -129,6 +126,10 @@ snow_status snow_value_store_begin(snow_value_store *s,
     SNOW_TRY(reserve_bands(s));
     if (s->turned)
         SNOW_TRY(reserve_turned(s));
+    if (params->in_parts) {
+        snow_memory_by_pages(s->context, s->masks);
+        snow_memory_by_pages(s->context, s->copy);
+    }
     if (s->in_place)
         return SNOW_STATUS_OK;
     int64_t rows = s->slices * (s->rows + 2 * s->margin);

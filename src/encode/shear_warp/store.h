@@ -120,7 +120,8 @@ typedef struct snow_value_store_params {
     snow_encoding encoding; /* AUTO: chosen by the cells */
     snow_isa isa;           /* resolved */
     int threads;
-    bool copied; /* the volume may go before the picture is drawn */
+    bool copied;   /* the volume may go before the picture is drawn */
+    bool in_parts; /* between pictures: pages of memory come one by one */
     const snow_value_stored_range
         *seen;      /* ranges of stored values that are counted: */
     int seen_count; /* 0: none are; up to SNOW_VALUE_SEEN */

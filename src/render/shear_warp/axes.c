@@ -20,6 +20,8 @@
 #define TURN_MOST 0.35
 #define TURN_AHEAD 0.8
 #define PICTURES_AHEAD 64
+/* Of a picture's time, for what is made behind it in any case. */
+#define SHARE 0.1
 
 static void forget(snow_value_encoding *kept) {
     kept->key.generation = 0;
@@ -130,11 +132,11 @@ static int find_next(const snow_value_params *params, double from[3][3],
 
 /* Begins the encoding along an axis. */
 static bool begin_axis(snow_value_path *path, const snow_value_params *params,
-                       const snow_value_order *order,
-                       snow_value_encoding *kept) {
+                       snow_value_order *order, snow_value_encoding *kept) {
     forget(kept);
     kept->store.context = path->context;
     kept->interesting = -1;
+    order->params.in_parts = true;
     if (!has_room(path, params->volume,
                   snow_value_store_expect(&order->params)) ||
         snow_value_store_begin(&kept->store, &order->params) != SNOW_STATUS_OK)
@@ -143,8 +145,26 @@ static bool begin_axis(snow_value_path *path, const snow_value_params *params,
     return true;
 }
 
+/* Items more of it, so that it is whole when it is needed in so many pictures;
+ * and what can be made in some seconds.  Errors: those of encoding. */
+static snow_status go_on(snow_value_store *store,
+                         const snow_value_store_params *params, int pictures,
+                         double seconds) {
+    const double until = snow_seconds() + seconds;
+    const int64_t least = params->threads; /* or some of them would wait */
+    int64_t left = snow_value_store_left(store);
+    int64_t some = (left + pictures - 1) / pictures;
+    while (left && (some || snow_seconds() < until)) {
+        SNOW_TRY(
+            snow_value_store_go_on(store, params, some > least ? some : least));
+        left = snow_value_store_left(store);
+        some = 0;
+    }
+    return SNOW_STATUS_OK;
+}
+
 void snow_value_prepare_axis(snow_value_path *path,
-                             const snow_value_params *params) {
+                             const snow_value_params *params, double seconds) {
     snow_value_axes *axes = &path->axes;
     const uint64_t generation = params->volume->generation;
     const bool turns = axes->camera_of == generation;
@@ -168,17 +188,9 @@ void snow_value_prepare_axis(snow_value_path *path,
         snow_value_order_make(path, &ahead, true, &order) != SNOW_STATUS_OK)
         return;
     snow_value_encoding *kept = &axes->kept[next.slice_axis];
-    /* The first time it asks for memory, which takes long enough. */
-    const bool first = !snow_value_fits_key(path, kept, &ahead, generation);
-    bool good = !first || begin_axis(path, &ahead, &order, kept);
-    /* Some bands more of it, so that it is whole when it is needed. */
-    const int64_t left = good && (!first || pictures == 1)
-                             ? snow_value_store_left(&kept->store)
-                             : 0;
-    if (left)
-        good = snow_value_store_go_on(&kept->store, &order.params,
-                                      (left + pictures - 1) / pictures) ==
-               SNOW_STATUS_OK;
-    if (!good)
+    if (!(snow_value_fits_key(path, kept, &ahead, generation) ||
+          begin_axis(path, &ahead, &order, kept)) ||
+        go_on(&kept->store, &order.params, pictures, seconds * SHARE) !=
+            SNOW_STATUS_OK)
         forget(kept);
 }

@@ -396,7 +396,7 @@ static snow_status draw_whole(snow_value_path *path,
                            work_of(params), &path->drawing));
     snow_value_end_image(path->image);
     snow_lap(&mark, &stats->seconds_splat);
-    snow_value_prepare_axis(path, params);
+    snow_value_prepare_axis(path, params, stats->seconds_splat);
     stats->kept_bytes = snow_value_axes_bytes(path);
     stats->kept_most = snow_value_axes_most(params->volume);
     snow_lap(&mark, &stats->seconds_encode);

@@ -196,10 +196,11 @@ bool snow_value_serves(const snow_value_path *path,
 void snow_value_change_axis(snow_value_path *path,
                             const snow_value_params *params);
 
-/* After a picture: the encoding along the next axis, by so many bands that it
- * is whole when the view, which goes on to turn, gets there. */
+/* After a picture that took so many seconds: the encoding along the next axis,
+ * by so many bands that it is whole when the view, which goes on to turn, gets
+ * there, or by what can be made in a tenth of the time, if that is more. */
 void snow_value_prepare_axis(snow_value_path *path,
-                             const snow_value_params *params);
+                             const snow_value_params *params, double seconds);
 
 /* What is kept; false: nothing was. */
 bool snow_value_forget_axes(snow_value_path *path);
