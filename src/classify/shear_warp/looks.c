@@ -7,6 +7,7 @@
 #include "classify/shear_warp/table.h"
 
 #include "base/exp_log.h"
+#include "base/thread_pool.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,6 +17,12 @@
 
 /* A look whose steepest ramp spans fewer nodes has them placed by measure. */
 #define STEEP_NODES 4
+
+/* Looks that are made at once, by vectors. */
+#define ALPHAS 64
+
+#define TEMPLATE "classify/shear_warp/looks.tmpl.h"
+#include "simd/each_isa.h"
 
 /* --- looks ---------------------------------------------------------------- */
 
@@ -28,54 +35,79 @@ static void look_at(const snow_value_look *look, double v,
         rgba[3] = 0;
 }
 
-/* Straight colours, and the logarithms of what shines through the reference
- * length: all that a look has before the length of its rays is known. */
-static snow_status find_plain(snow_context *context,
+/* Looks that are made as one item of work. */
+#define LOOKS 8192
+
+typedef struct looks_job {
+    const snow_value_look *look;
+    snow_value_table *table;
+} looks_job;
+
+/* All looks of a table, by items. */
+static snow_status make_looks(snow_context *context,
                               const snow_value_look *look,
-                              snow_value_table *table) {
-    snow_transfer_hint hint = {0};
-    SNOW_TRY(SNOW_RESERVE(context, table->plain, 0, 3 * table->look_count));
-    SNOW_TRY(SNOW_RESERVE(context, table->logs, 0, table->look_count));
-    double last = -1, clear = 0;
-    for (size_t n = 0; n < table->look_count; n++) {
-        double rgba[4];
-        look_at(look, (double)n * table->step, &hint, rgba);
-        if (rgba[3] != last)
-            clear = rgba[3] < 1 ? snow_log(1 - rgba[3]) : -INFINITY;
-        last = rgba[3];
-        table->logs[n] = clear;
-        for (int c = 0; c < 3; c++)
-            table->plain[3 * n + (size_t)c] = (float)rgba[c];
-    }
-    return SNOW_STATUS_OK;
+                              snow_value_table *table, snow_work_fn *work) {
+    looks_job job = {look, table};
+    return snow_parallel(context, look->threads,
+                         (int64_t)(table->look_count + LOOKS - 1) / LOOKS, work,
+                         &job);
 }
 
-/* Alphas that are made at once, by vectors. */
-#define ALPHAS 64
+/* The end of an item's looks. */
+static size_t looks_end(const snow_value_table *table, int64_t item) {
+    const size_t end = ((size_t)item + 1) * LOOKS;
+    return end < table->look_count ? end : table->look_count;
+}
+
+/* Straight colours, and the logarithms of what shines through the reference
+ * length: all that a look has before the length of its rays is known. */
+static void find_plain(void *of, int64_t item, int worker) {
+    const looks_job *job = of;
+    const snow_value_look *look = job->look;
+    snow_value_table *table = job->table;
+    const size_t end = looks_end(table, item);
+    snow_transfer_hint hint = {0};
+    double logs[ALPHAS] = {0};
+    (void)worker;
+    for (size_t n = (size_t)item * LOOKS; n < end; n++) {
+        double rgba[4];
+        look_at(look, (double)n * table->step, &hint, rgba);
+        for (int c = 0; c < 3; c++)
+            table->plain[3 * n + (size_t)c] = (float)rgba[c];
+        logs[n % ALPHAS] = rgba[3];
+        if (n % ALPHAS + 1 < ALPHAS && n + 1 < end)
+            continue;
+        SNOW_OF_ISA(look->isa, logs_of)(logs);
+        memcpy(table->logs + n - n % ALPHAS, logs,
+               (n % ALPHAS + 1) * sizeof *logs);
+    }
+}
 
 /* Those of every `step`-th look from `first` on, of so many reference lengths;
  * the last look stands for all behind it. */
-static void find_alphas(const snow_value_table *table, size_t first,
-                        size_t step, double exponent, double out[ALPHAS]) {
+static void find_alphas(const snow_value_table *table, snow_isa isa,
+                        size_t first, size_t step, double exponent,
+                        double out[ALPHAS]) {
     for (size_t n = 0; n < ALPHAS; n++) {
         size_t at = first + n * step;
         out[n] =
             table->logs[at < table->look_count ? at : table->look_count - 1];
     }
-    for (size_t n = 0; n < ALPHAS; n++)
-        out[n] = -snow_exp_less_1(exponent * out[n]);
+    SNOW_OF_ISA(isa, alphas_of)(exponent, out);
 }
 
 /* Looks of a step, `step` quantized values apart. */
-static snow_status fill_looks(snow_context *context,
-                              const snow_value_look *look,
-                              snow_value_table *table) {
-    SNOW_TRY(SNOW_RESERVE(context, table->looks, 0, 4 * table->look_count));
-    for (size_t first = 0; first < table->look_count; first += ALPHAS) {
+static void fill_looks(void *of, int64_t item, int worker) {
+    const looks_job *job = of;
+    const snow_value_look *look = job->look;
+    const snow_value_table *table = job->table;
+    const size_t end = looks_end(table, item);
+    (void)worker;
+    for (size_t first = (size_t)item * LOOKS; first < end; first += ALPHAS) {
         double alphas[ALPHAS];
-        size_t left = table->look_count - first;
-        find_alphas(table, first, 1, look->exponent / look->steps, alphas);
-        for (size_t n = 0; n < ALPHAS && n < left; n++) {
+        find_alphas(table, look->isa, first, 1, look->exponent / look->steps,
+                    alphas);
+        for (size_t n = 0; n < ALPHAS && n < end - first; n++) {
             float *out = table->looks + 4 * (first + n);
             const float *plain = table->plain + 3 * (first + n);
             for (int c = 0; c < 3; c++)
@@ -83,7 +115,6 @@ static snow_status fill_looks(snow_context *context,
             out[3] = (float)alphas[n];
         }
     }
-    return SNOW_STATUS_OK;
 }
 
 /* The looks where those of neighbouring entries are beside each other. */
@@ -134,7 +165,8 @@ static double measure_changes(const snow_value_look *look,
     double before[4] = {0}, alphas[ALPHAS], total = 0;
     for (size_t v = 0; v <= SNOW_VALUE_MOST; v++) {
         if (v % ALPHAS == 0)
-            find_alphas(table, v * step, step, look->exponent, alphas);
+            find_alphas(table, look->isa, v * step, step, look->exponent,
+                        alphas);
         double here[4] = {0, 0, 0, alphas[v % ALPHAS]};
         for (int c = 0; c < 3; c++)
             here[c] = (double)table->plain[3 * v * step + (size_t)c] * here[3];
@@ -243,7 +275,9 @@ snow_status snow_value_looks_make(snow_context *context,
                                   snow_value_table *table) {
     if (!known) {
         SNOW_TRY(place_evenly(context, look, table));
-        SNOW_TRY(find_plain(context, look, table));
+        SNOW_TRY(SNOW_RESERVE(context, table->plain, 0, 3 * table->look_count));
+        SNOW_TRY(SNOW_RESERVE(context, table->logs, 0, table->look_count));
+        SNOW_TRY(make_looks(context, look, table, find_plain));
     }
     if (table->measured)
         measure_nodes(look, table);
@@ -261,6 +295,7 @@ snow_status snow_value_looks_make(snow_context *context,
     }
     for (int node = 0; node < look->nodes; node++)
         table->look_of[node] = (int)(table->at[node] / table->step + 0.5);
-    SNOW_TRY(fill_looks(context, look, table));
+    SNOW_TRY(SNOW_RESERVE(context, table->looks, 0, 4 * table->look_count));
+    SNOW_TRY(make_looks(context, look, table, fill_looks));
     return table->nodes ? SNOW_STATUS_OK : fill_planes(context, look, table);
 }
