@@ -12,6 +12,7 @@ snow_status snow_clear(snow_context *context, void *block, size_t bytes);
 
 /* Of a block that nothing was written to: the system gives its memory little by
  * little, where it is written to first. */
-void snow_memory_by_pages(const snow_context *context, void *block);
+void snow_memory_by_pages(const snow_context *context, void *block,
+                          size_t bytes);
 
 #endif

@@ -31,16 +31,18 @@ static void *malloc_allocate(void *user, size_t bytes) {
 
 /* A huge page is cleared as a whole when it is touched, which takes up to five
  * milliseconds in a virtual machine whose host has to find it. */
-void snow_memory_by_pages(const snow_context *context, void *block) {
+void snow_memory_by_pages(const snow_context *context, void *block,
+                          size_t bytes) {
 #ifdef MADV_NOHUGEPAGE
-    const size_t page = 4096, first = (size_t)(uintptr_t)block / page + 1;
-    const size_t end = ((uintptr_t)block + snow_block_bytes(block)) / page;
+    const size_t page = 4096, at = (size_t)(uintptr_t)block;
+    const size_t first = at / page + 1, end = (at + bytes) / page;
     if (context->allocator.allocate == malloc_allocate && first < end)
-        (void)madvise((char *)block + (first * page - (uintptr_t)block),
-                      (end - first) * page, MADV_NOHUGEPAGE);
+        (void)madvise((char *)block + (first * page - at), (end - first) * page,
+                      MADV_NOHUGEPAGE);
 #else
     (void)context;
     (void)block;
+    (void)bytes;
 #endif
 }
 

@@ -127,8 +127,8 @@ snow_status snow_value_store_begin(snow_value_store *s,
     if (s->turned)
         SNOW_TRY(reserve_turned(s));
     if (params->in_parts) {
-        snow_memory_by_pages(s->context, s->masks);
-        snow_memory_by_pages(s->context, s->copy);
+        snow_memory_by_pages(s->context, s->masks, snow_block_bytes(s->masks));
+        snow_memory_by_pages(s->context, s->copy, snow_block_bytes(s->copy));
     }
     if (s->in_place)
         return SNOW_STATUS_OK;

@@ -68,8 +68,12 @@ static bool is_beyond_outside(const snow_quantizer *quantizer,
 
 /* Sets `count` bits from `first` on. */
 static void set_bits(uint32_t *bits, size_t first, size_t count) {
-    for (size_t n = first; n < first + count; n++)
-        bits[n / 32] |= UINT32_C(1) << n % 32;
+    for (const size_t end = first + count; first < end;) {
+        const size_t at = first % 32, left = end - first;
+        const size_t some = left < 32 - at ? left : 32 - at;
+        bits[first / 32] |= ~UINT32_C(0) >> (32 - some) << at;
+        first += some;
+    }
 }
 
 /* A bit for each native of a row that is not in a range, from bit `by` on; to
