@@ -2,6 +2,7 @@
 #include "core.h"
 
 #include <math.h>
+#include <string.h>
 
 static void release_image(void *object) {
     snow_image_free(object);
@@ -67,6 +68,8 @@ typedef struct annotations {
     const char *unit, *title;
     double range[2]; /* of colours without opacity; not a number: none */
     PyObject *texts; /* (x, y, share of x, of y, height, text), ...; or NULL */
+    PyObject *measures; /* records as bytes; or NULL */
+    const char *value_unit;
     PyObject *bars; /* (transfer, name, low, high), ...: of channels, the lowest
                        first; or NULL */
 } annotations;
@@ -133,6 +136,22 @@ static snow_status add_texts(PyObject *texts, snow_overlay *overlay) {
     return status;
 }
 
+static snow_status add_measures(const image_object *o, const annotations *a,
+                                snow_overlay *overlay) {
+    snow_status status = SNOW_STATUS_OK;
+    const Py_ssize_t count = a->measures ? PyTuple_Size(a->measures) : 0;
+    for (Py_ssize_t n = 0; n < count && !status; n++) {
+        snow_measure one;
+        PyObject *record = PyTuple_GetItem(a->measures, n);
+        if (!PyBytes_Check(record) || PyBytes_Size(record) != sizeof one)
+            return SNOW_STATUS_BAD_USAGE;
+        memcpy(&one, PyBytes_AsString(record), sizeof one);
+        status = snow_overlay_measure(overlay, &o->info, &o->view, 0, 0,
+                                      a->value_unit, &one);
+    }
+    return status;
+}
+
 /* In the order of the command line: what comes first takes its place. */
 static snow_status annotate(const image_object *o, const annotations *a,
                             snow_overlay *overlay) {
@@ -148,6 +167,8 @@ static snow_status annotate(const image_object *o, const annotations *a,
         status = snow_overlay_title(overlay, a->title);
     if (!status)
         status = add_texts(a->texts, overlay);
+    if (!status)
+        status = add_measures(o, a, overlay);
     return status;
 }
 
@@ -157,7 +178,7 @@ static PyObject *image_save(PyObject *self, PyObject *args,
     static char *names[] = {"path",    "background", "bits",  "overwrite",
                             "letters", "legend",     "unit",  "scale_bar",
                             "title",   "depth",      "range", "bars",
-                            "texts",   "progress",   NULL};
+                            "texts",   "measures", "value_unit", "progress",   NULL};
     image_object *o = (image_object *)self;
     snow_image_options options;
     PyObject *file, *background = Py_None, *depth = Py_None, *rgb = NULL;
@@ -167,10 +188,11 @@ static PyObject *image_save(PyObject *self, PyObject *args,
     annotations a = {.range = {NAN, NAN}};
     snow_image_options_init(&options);
     if (!PyArg_ParseTupleAndKeywords(
-            args, keywords, "O|$OipppzpzO(dd)O!O!O", names, &file, &background,
+            args, keywords, "O|$OipppzpzO(dd)O!O!O!zO", names, &file, &background,
             &options.bits, &overwrite, &a.letters, &a.legend, &a.unit,
             &a.scale_bar, &a.title, &depth, &a.range[0], &a.range[1],
-            &PyTuple_Type, &a.bars, &PyTuple_Type, &a.texts, &progress))
+            &PyTuple_Type, &a.bars, &PyTuple_Type, &a.texts, &PyTuple_Type,
+            &a.measures, &a.value_unit, &progress))
         return NULL;
     if (file != Py_None && PyBytes_AsStringAndSize(file, &path, NULL))
         return NULL;
@@ -194,7 +216,8 @@ static PyObject *image_save(PyObject *self, PyObject *args,
     }
     snow_overlay *overlay = NULL;
     snow_status status = SNOW_STATUS_OK;
-    if (a.letters || a.legend || a.scale_bar || a.title || a.texts)
+    if (a.letters || a.legend || a.scale_bar || a.title || a.texts ||
+        a.measures)
         status = snow_overlay_new(o->context->context, (int)o->shape[1],
                                   (int)o->shape[0], &overlay);
     if (overlay)

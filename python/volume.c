@@ -1,6 +1,7 @@
 /* volume.c - volumes of files and over arrays, and their voxels as a buffer. */
 #include "core.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -507,7 +508,79 @@ static PyObject *volume_freeze(PyObject *self, PyObject *nothing) {
     Py_RETURN_NONE;
 }
 
+/* How far a place is from a slice across an axis, in slices. */
+static double off_slice(const snow_volume_info *info, const double place[3],
+                        int axis, int64_t index) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    double far = 0, thick = 0;
+    for (int i = 0; i < 3; i++) {
+        const double(*m)[4] = info->matrix;
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const double scale = info->axis_scale[i] != 0 ? info->axis_scale[i] : 1;
+        const double normal = m[j][u] * m[k][v] - m[k][u] * m[j][v];
+        far += normal * (place[i] * scale - m[i][3]);
+        thick += normal * m[i][axis];
+    }
+    return fabs(far / thick - (double)index);
+}
+
+static bool lies_in(const snow_volume_info *info, const snow_measure *m,
+                    int axis, int64_t index) {
+    bool lies = true;
+    if (m->kind == SNOW_MEASURE_ELLIPSE)
+        return m->axis == axis && m->index == index;
+    for (int n = 0; n < (m->kind == SNOW_MEASURE_LINE ? 2 : 3); n++)
+        lies &= off_slice(info, m->points[n], axis, index) <= 0.500001;
+    return lies;
+}
+
+static PyObject *measure_of(const snow_measure *m, bool lies) {
+    const double(*p)[3] = m->points;
+    return Py_BuildValue(
+        "(y#i((ddd)(ddd)(ddd))dLddddsiLiO)", (const char *)m,
+        (Py_ssize_t)sizeof *m, (int)m->kind, p[0][0], p[0][1], p[0][2], p[1][0],
+        p[1][1], p[1][2], p[2][0], p[2][1], p[2][2], m->result,
+        (long long)m->count, m->mean, m->deviation, m->min, m->max, m->unit,
+        m->axis, (long long)m->index, m->outside, lies ? Py_True : Py_False);
+}
+
+/* _measure(text, axis, index): of each the record, what it says, and whether it
+ * lies in that slice (index -1: none is asked). */
+static PyObject *volume_measure(PyObject *self, PyObject *args) {
+    volume_object *o = (volume_object *)self;
+    const char *text;
+    int axis;
+    long long index;
+    snow_status status = SNOW_STATUS_OK;
+    if (!PyArg_ParseTuple(args, "siL", &text, &axis, &index) ||
+        !volume_use(o, Py_None))
+        return NULL;
+    const snow_volume_info *info = snow_volume_get_info(o->volume);
+    PyObject *list = PyList_New(0);
+    for (int n = 0; list && !status; n++) {
+        snow_measure one = {.size = sizeof one};
+        status =
+            snow_measure_read(o->context->context, text, n, info, &one);
+        if (!status && one.kind == SNOW_MEASURE_NONE)
+            break;
+        if (!status)
+            CALL(o->context, status, snow_measure_values(o->volume, &one));
+        PyObject *item =
+            status ? NULL
+                   : measure_of(&one, index < 0 ||
+                                          lies_in(info, &one, axis, index));
+        if (!status && (!item || PyList_Append(list, item)))
+            Py_CLEAR(list);
+        Py_XDECREF(item);
+    }
+    if (context_leave(o->context, status) && list)
+        return list;
+    Py_XDECREF(list);
+    return NULL;
+}
+
 static PyMethodDef volume_methods[] = {
+    METHOD("_measure", volume_measure, METH_VARARGS, "text, axis, index"),
     METHOD("_statistics", volume_statistics, METH_O, "of finite values"),
     METHOD("_histogram", volume_histogram, METH_VARARGS,
            "low, high, bins, progress"),

@@ -58,6 +58,7 @@ class Shot(TypedDict, total=False):
     up: Numbers | None
     letters: bool | None
     legend: bool | str | None
+    measure: str | None
     overlay: Any | None
     overlay_look: Any | None
     threads: int | None

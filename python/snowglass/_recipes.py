@@ -27,12 +27,13 @@ ARRAY = ("affine", "medical", "slope", "intercept", "copy", "frozen", "memory")
 OVERLAY = ("preset", "colormap", "range", "opacity")
 #: Keys of the file of a picture and of other verbs, which are left out.
 OTHERS = ("output", "depth", "overwrite", "background", "bits", "frames", "fps",
-          "verb", "version", "title", "annotate", "box", "measure")
+          "verb", "version", "title", "annotate", "box")
 #: What need not be said; some of it the command line has no words for.
 USUAL = {"perspective": 0, "opacity_length": 0, **{name: DEFAULTS[name] for name in (
     "azimuth", "elevation", "roll", "zoom", "fit", "threads")}}
 #: What Volume.slice takes, besides the look.
-SLICE = ("axis", "at", "size", "kernel", "legend", "letters", "threads")
+SLICE = ("axis", "at", "size", "kernel", "legend", "letters", "measure",
+         "threads")
 
 
 def _range_key(given: Any) -> Any:

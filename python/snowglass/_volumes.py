@@ -418,6 +418,8 @@ class Volume(_snowglass.Volume):
         legend, letters   what is drawn when the picture is saved as PNG, WebP or
                       TIFF of 8 bits; a legend may be its title, "T (K)", or
                       "scale" for the scale bar alone
+        measure       as of Volume.measure, drawn when the picture is saved; its stats
+                      have what is measured
         progress      called as progress(stage, fraction), or True: printed,
                       by tqdm where that is installed
 
@@ -449,7 +451,7 @@ class Volume(_snowglass.Volume):
                  up: Any = None, fit: str = DEFAULTS["fit"], light: Any = None,
                  overlay: Any = None, overlay_look: Any = None,
                  legend: Union[bool, str] = False,
-                 letters: bool = DEFAULTS["letters"],
+                 letters: bool = DEFAULTS["letters"], measure: Optional[str] = None,
                  progress: Progress = None, azimuths: Optional[Sequence[float]] = None,
                  quiet: bool = False, **settings: Any) -> Image:
         """One of a movie, whose frame suits all `azimuths`; `quiet`: the caller
@@ -483,7 +485,7 @@ class Volume(_snowglass.Volume):
                  "perspective": perspective, "position": position,
                  "target": target, "up": up, "fit": fit, "light": light,
                  "overlay": overlay, "overlay_look": overlay_look,
-                 "legend": legend, "letters": letters,
+                 "legend": legend, "letters": letters, "measure": measure,
                  **settings}
         fields = {"width": width, "height": height, "azimuth": azimuth,
                   "elevation": elevation, "roll": roll, "zoom": zoom,
@@ -505,12 +507,15 @@ class Volume(_snowglass.Volume):
         if layer is not None:
             layers += ((layer.volume, layer.transfer, False, 1.0),)
         annotations = self._annotations(mode, letters, legend, mixture)
+        listed = self._measured(measure, annotations)
         image, depth, target, zoom, stats = first._render(
             Image, transfer, view, fields, settings, fit == "visible", azimuths,
             progress_of(progress), layers, mixture is not None,
             mixture.shares[0] if mixture else 1.0,
             _marks_of(annotations, mode, transfer))
         image.stats, image.depth, image._view = stats, depth, (target, zoom)
+        if measure is not None:
+            image.stats = {**stats, "measures": listed}
         if stats["empty"] and not quiet:
             warn(_emptiness(mode, settings, stats))
         if azimuths is None and not isinstance(
@@ -534,6 +539,38 @@ class Volume(_snowglass.Volume):
         if mixture:
             annotations["bars"] = mixture.bars(mode)
         return annotations
+
+    def measure(self, text: str) -> list[dict[str, Any]]:
+        """Lengths, angles, and the values of voxels in ellipses, as the command line's
+        `--measure` lists them: "line 0,0,0 30,40,0; angle P P P; ellipse axial 12.5 0,20 15
+        10", where a point P is x,y,z, in the units of the world."""
+        return self._measured(text, {})
+
+    def _measured(self, text: Optional[str], annotations: dict[str, Any], along: int = 0,
+                  index: int = -1) -> list[dict[str, Any]]:
+        """What is measured; annotations get what lies in that slice, or all."""
+        if _checks.text("measure", text, "such as 'line 0,0,0 10,0,0'") is None:
+            return []
+        unit = "HU" if self._info["hounsfield"] else self._info["value_unit"]
+        columns = _arrays.columns_of(self._order, self._axes)  # as of slices
+        inner = re.sub(r"(?<=ellipse )(\s*)([xyz])(?=\s)", lambda found: found[1] + "xyz"[
+            columns.index("xyz".index(found[2]))], str(text))
+        listed, drawn = [], []
+        for n, (record, kind, points, result, count, mean, deviation, least, most, length,
+                axis, at, outside, lies) in enumerate(self._measure(inner, along, index)):
+            if outside and not (self._source or {}).get("crop"):
+                raise ValueError(f"measure: measure {n + 1} is outside the volume")
+            name = ("", "line", "angle", "ellipse")[kind]
+            each: dict[str, Any] = {"kind": name, "points": points[:2 if kind == 1 else 3],
+                                    ("", "length", "degrees", "area")[kind]: result}
+            if kind == 3:
+                each.update(mean=mean, deviation=deviation, min=least, max=most,
+                            count=max(count, 0), value_unit=unit, axis="xyz"[columns[axis]], index=at)
+            listed.append(each if kind == 2 else {**each, "unit": length})
+            if lies:
+                drawn.append(record)
+        annotations.update(measures=tuple(drawn), value_unit=unit)
+        return listed
 
     @staticmethod
     def _annotate(image: Image, mode: str, transfer: Any, look: Any,
@@ -603,7 +640,7 @@ class Volume(_snowglass.Volume):
               kernel: Optional[str] = None, legend: Union[bool, str] = False,
               overlay: Any = None, overlay_look: Union[Look, str, None] = None,
               outline: bool = False, letters: bool = True,
-              threads: int = 0) -> Image:
+              measure: Optional[str] = None, threads: int = 0) -> Image:
         """A picture of one slice, in the colours of a look, opaque.
 
         axis    "axial", "coronal" or "sagittal": the axis of the grid that is
@@ -620,6 +657,8 @@ class Volume(_snowglass.Volume):
         overlay, overlay_look  as of render, but half as opaque at most, unless
                 the look has opacities
         outline  True: the borders of the overlay's labels or values alone
+        measure  as of Volume.measure: what lies in the slice is drawn when the picture is
+                saved, and all is in its stats
 
         The patient's left is at the right of axial and coronal pictures, the
         front at the top of axial ones and at the left of sagittal ones.
@@ -646,6 +685,7 @@ class Volume(_snowglass.Volume):
         transfer = mixture.transfers[0] if mixture else \
             alone._slice_transfer(look)
         annotations = alone._annotations("slice", letters, legend, mixture)
+        listed = self._measured(measure, annotations, along, index)
         lines = _overlays.over_slices(self, overlay, overlay_look, outline)
         lines.layers = tuple(
             (self._slice_alone(along, index, volume), transfer, mixes, share)
@@ -654,12 +694,14 @@ class Volume(_snowglass.Volume):
                                   {"kernel": kernel, "threads": threads}, mixture,
                                   _marks_of(annotations, "slice", transfer), lines)
         image.stats = {"axis": axis, "index": index, "position": position}
+        if measure is not None:
+            image.stats["measures"] = listed
         if not isinstance(look, _snowglass.Transfer) and not lines.layers:
             image._made = (self._source, self._info["unit"], look_of(look), {
                 "verb": "slice", "axis": axis.lower(),
                 "at": at if isinstance(at, str) else str(index), "size":
                 None if size is None else _sides(size), "kernel": kernel,
-                "legend": legend, "letters": letters,
+                "legend": legend, "letters": letters, "measure": measure,
                 "threads": threads})
         alone._annotate(image, "slice", transfer, look, annotations)
         return image

@@ -14,6 +14,7 @@ TYPES = {
     "gradient_points": POINTS, "window": NUMBERS, "fov": "bool | float",
     "range": "str | Numbers", "place": NUMBERS,
     "light": f"str | {NUMBERS}", "material": NUMBERS, "legend": "bool | str",
+    "measure": "str",
     "size": "int | Numbers", "dims": NUMBERS,
     "spacing": f"float | {NUMBERS}", "time": "int", "component": "str | int",
     "channels": "Any", "crop": POINTS,
@@ -25,7 +26,7 @@ OTHERWISE = {
     "shade": ("shade", "bool | str"), "overlay": ("overlay", "Any"),
     "overlay-look": ("overlay_look", "Any"), "mask": ("mask", "Path"),
     "label-table": ("label_table", "Path"), "tf": (None, ""),
-    "title": (None, ""), "annotate": (None, ""), "box": (None, ""), "measure": (None, ""),
+    "title": (None, ""), "annotate": (None, ""), "box": (None, ""),
     "as": (None, ""), "series": ("series", "str | int"),
 }
 LOOK = ("preset", "colormap", "points", "gradient_points", "window", "range",
