@@ -19,15 +19,15 @@
 #            double, or looks at timing and memory of processes
 # The sanitized builds of the long tier run all but `long` and `plain`.
 set(SNOW_LABEL_release isa_wasm)
-set(SNOW_LABEL_long cli_documents cli_large cli_matrix cli_stream cli_turntable
+set(SNOW_LABEL_long cli_documents cli_paper cli_tutorials cli_large cli_matrix cli_stream cli_turntable
     isa_neon isa_wasm mpi_bench mpi_clusters mpi_fail mpi_hosts
     mpi_insitu mpi_other mpi_overlay mpi_python mpi_serve mpi_stall
     package_abi package_access package_cmake package_copies
     serve_fuzz
-    package_layout package_manual package_pkgconfig package_recipes package_site package_wheel
+    package_layout package_manual package_pkgconfig package_recipes package_release package_site package_wheel
     package_within wasm_engine wasm_page)
 set(SNOW_LABEL_late
-    catalyst cli_codes cli_report cli_tutorials cli_again cli_background cli_bench cli_figures
+    catalyst cli_codes cli_report cli_again cli_background cli_bench cli_figures
     cli_interrupt cli_limits cli_measurements cli_ranks cli_real
     cli_shear_warp cli_show mpi_comm oracle_amr oracle_cf oracle_damage oracle_dicom oracle_fit
     oracle_hdf5 oracle_mosaic oracle_mrc oracle_netcdf oracle_nibabel oracle_npy
