@@ -34,8 +34,17 @@ for option in $("$PYTHON" -B scripts/manual "$TABLE" man render | sed -nE 's/^\\
     grep -q -- "--$option" site/docs/options.html || lacking+=" --$option"
 done
 for function in $(sed -nE 's/^SNOW_API [^(]*\b(snow_[a-z0-9_]+)\(.*/\1/p' include/snowglass/*.h); do
-    grep -q "id=\"$function\"" site/docs/c-api.html || lacking+=" $function"
+    grep -q "id=\"$function\"" site/docs/c-api.html &&
+        grep -q "href=\"#$function\"" site/docs/c-api.html || lacking+=" $function"
 done
+# Records and functions that callers give, as Universal Ctags finds them.
+if ctags --version 2>/dev/null | grep -q Universal; then
+    for type in $(ctags -x --c-kinds=t --_xformat=%N -IDUMMY include/snowglass/*.h); do
+        case $type in snow_*) grep -q "id=\"$type\"" site/docs/c-api.html || lacking+=" $type" ;; esac
+    done
+fi
+check "the headers themselves are there" cmp include/snowglass/volume.h \
+    site/include/snowglass/volume.h
 for name in Volume.render Look Image.save compare series Viewer.close insitu.Movie; do
     grep -q "<h[23] id=\"$(tr -d . <<<"${name,,}")\"" site/docs/python-api.html ||
         lacking+=" $name"
