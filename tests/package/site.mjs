@@ -36,16 +36,16 @@ async function findings(page) {
 }
 
 for (const [width, colorScheme, step] of [[400, 'light', 1], [1600, 'dark', 8]]) {
-    const page = await browser.newPage({viewport: {width, height: 900}, colorScheme});
     for (const path of pages.filter((_, n) => n % step === 0)) {
+        const page = await browser.newPage({viewport: {width, height: 900}, colorScheme});
         const name = `${relative(site, path)} at ${width}, ${colorScheme}`;
         await page.goto(pathToFileURL(path).href);
         const wide = await page.evaluate(() => document.documentElement.scrollWidth);
         check(name, wide <= width, `is ${wide} wide`);
         const found = await findings(page);
         check(name, found.length === 0, found.join('; '));
+        await page.close();
     }
-    await page.close();
 }
 
 const page = await browser.newPage();

@@ -35,10 +35,15 @@ REASONS = [
      "builds the sources: as ./dev package debs does, and tests of them"),
     (r".*", r"ssh |srun --pty|https://", "needs other machines"),
     (r".*", r"valgrind ", "needs valgrind"),
-    (r"tutorials/", r".*", "run with its files by scripts/tutorials, a test of the sources"),
+    (r"(ct-turntable|pet-ct|microscope|simulation|python-figure|cluster|c-program)\.md",
+     r"", "run with its files by scripts/tutorials, a test of the sources"),
     (r".*", r"pip install [.]", "needs scikit-build-core"),
     (r".*", r"mpirun\.mpich", "needs MPICH; the package is of Open MPI"),
+    (r"dicom\.md", r"SUV = ", "a formula"),
+    (r"install\.md", r"xargs rm|apt-get install", "removes or installs packages"),
+    (r"movies\.md", r".*--as rgb24.*\|$", "a pipe of two lines, which tests of movies run"),
     (r"looks\.md", r"light-grey 173", "what the tool prints"),
+    (r"usage\.md", r"\(0008,0060\)", "what the tool prints"),
     (r"README\.md", r"\s*(SD|base|head\.nrrd)\s", "a figure"),
 ]
 
