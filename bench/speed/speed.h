@@ -93,9 +93,11 @@ typedef struct speed_row {
     int encoded_frames; /* of these, so many encoded the volume anew */
     snow_stats stats;   /* of the last one */
     double median, least, cpu;
-    double encode;        /* classification and writing of EA, IA, PA */
-    double new_threshold; /* the whole frame in which that happens */
-    double psnr, largest; /* against the exact picture; psnr -1: equal */
+    double serial, longest; /* of one thread, least: what more would not share,
+                               and the longest items of what they would */
+    double encode;          /* classification and writing of EA, IA, PA */
+    double new_threshold;   /* the whole frame in which that happens */
+    double psnr, largest;   /* against the exact picture; psnr -1: equal */
 } speed_row;
 
 typedef struct speed_result {

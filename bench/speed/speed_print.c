@@ -127,6 +127,28 @@ static figures figures_of(const speed_machine *machine, const speed_case *job,
     return out;
 }
 
+/* --- threads -------------------------------------------------------------- */
+
+static const int predicted[] = {8, 16, 64};
+
+/* How many times as fast as one thread so many are at least, if each takes the
+ * next item when it has none (Graham 1966): no batch ends later than it would
+ * with its work divided evenly and its longest item begun then. */
+static double predict(const speed_row *one, int threads) {
+    const double share = 1.0 / threads, work = one->least - one->serial;
+    return one->serial < 0 ? NAN
+                           : one->least / (one->serial + work * share +
+                                           one->longest * (1 - share));
+}
+
+/* The same as it was measured. */
+static double against_one(const speed_result *result, const speed_row *row) {
+    for (int i = 0; i < result->count; i++)
+        if (result->rows[i].way == row->way && result->rows[i].threads == 1)
+            return result->rows[i].median / row->median;
+    return NAN;
+}
+
 /* --- text ----------------------------------------------------------------- */
 
 /* A number, or a dash in its width. */
@@ -183,6 +205,27 @@ static void print_row(const speed_machine *machine, const speed_case *job,
            row->encoded_frames ? " e" : "");
 }
 
+/* What more threads would do of each way, and what those measured did. */
+static void print_threads(const speed_result *result) {
+    printf("threads                  serial%%  longest    8   16   64  "
+           "measured\n");
+    for (int i = 0; i < result->count; i++) {
+        const speed_row *one = &result->rows[i];
+        if (one->threads != 1 || speed_is_baseline(one->way))
+            continue;
+        printf("%-24s", one->way->name);
+        print_cell(7, 1, 100 * one->serial / one->least);
+        print_cell(8, 3, one->longest);
+        for (int n = 0; n < 3; n++)
+            print_cell(4, 1, predict(one, predicted[n]));
+        for (int k = 0; k < result->count; k++)
+            if (result->rows[k].way == one->way && k != i)
+                printf("  %d: %.2f", result->rows[k].threads,
+                       against_one(result, &result->rows[k]));
+        printf("\n");
+    }
+}
+
 /* Flushed: a case takes seconds to minutes, and who waits wants to see. */
 static void print_text(const speed_machine *machine, const speed_case *job,
                        const speed_result *result) {
@@ -204,6 +247,7 @@ static void print_text(const speed_machine *machine, const speed_case *job,
            " largest  n\n");
     for (int i = 0; i < result->count; i++)
         print_row(machine, job, result, &result->rows[i]);
+    print_threads(result);
     fflush(stdout);
 }
 
@@ -287,6 +331,12 @@ static json_t *row_json(const speed_machine *machine, const speed_case *job,
         {"read_share", f.read_share},
         {"flop_share", f.flop_share},
         {"bytes_per_interesting_voxel", f.bytes_per_voxel},
+        {"times_one_thread", against_one(result, row)},
+        {"serial_ms", row->serial},
+        {"longest_items_ms", row->longest},
+        {"predicted_8_threads", predict(row, 8)},
+        {"predicted_16_threads", predict(row, 16)},
+        {"predicted_64_threads", predict(row, 64)},
         {"encode_ms", row->encode},
         {"encode_gb_per_s", 1e-9 * f.encode_rate},
         {"new_threshold_ms", row->new_threshold},

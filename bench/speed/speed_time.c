@@ -28,6 +28,7 @@ typedef struct row_samples {
     int count, encodes;
     double spent; /* seconds */
     double wall[FRAMES_MOST], cpu[FRAMES_MOST];
+    double serial[FRAMES_MOST], longest[FRAMES_MOST];
     double encode[RUNS_MOST], anew[RUNS_MOST];
 } row_samples;
 
@@ -111,6 +112,9 @@ static snow_status draw(speed_session *session, speed_row *row,
     if (warming)
         return SNOW_STATUS_OK;
     samples->wall[samples->count] = 1e3 * stats->seconds_frame;
+    samples->serial[samples->count] =
+        1e3 * (stats->seconds_frame - stats->seconds_shared);
+    samples->longest[samples->count] = 1e3 * stats->seconds_longest;
     samples->cpu[samples->count++] = 1e3 * stats->cpu_frame;
     row->encoded_frames += has_encoded(stats);
     return SNOW_STATUS_OK;
@@ -165,13 +169,25 @@ static snow_status draw_anew(speed_session *session, speed_row *row,
     return draw_still(session, row);
 }
 
+/* What other programs have not lengthened. */
+static double least_of(const double *values, int count) {
+    double least = values[0];
+    for (int n = 1; n < count; n++)
+        least = values[n] < least ? values[n] : least;
+    return least;
+}
+
 /* Medians and minima out of the samples, which are sorted. */
 static void sum_up(row_samples *samples, speed_row *row) {
     row->frames = samples->count;
     row->median = bench_median(samples->wall, samples->count);
     row->least = samples->wall[0];
     row->cpu = bench_median(samples->cpu, samples->count);
-    row->encode = row->new_threshold = -1;
+    row->encode = row->new_threshold = row->serial = row->longest = -1;
+    if (row->threads == 1) {
+        row->serial = least_of(samples->serial, samples->count);
+        row->longest = least_of(samples->longest, samples->count);
+    }
     if (samples->encodes) {
         row->encode = bench_median(samples->encode, samples->encodes);
         row->new_threshold = bench_median(samples->anew, samples->encodes);

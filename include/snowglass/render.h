@@ -112,9 +112,9 @@ typedef struct snow_stats {
     uint64_t ea_bytes, ia_bytes, pa_bytes; /* IA 0: voxels read in place */
     double seconds_classify, seconds_shade, seconds_encode; /* stages of */
     double seconds_splat, seconds_composite, seconds_warp;  /*   figure 7 */
-    double seconds_frame; /* the whole picture */
-    double cpu_frame;     /* the same in processor time of the process */
-    uint64_t kept_bytes, kept_most; /* encodings along other slice axes */
+    double seconds_frame, cpu_frame; /* the picture; in processor time */
+    uint64_t kept_bytes, kept_most;  /* encodings along other slice axes */
+    double seconds_shared, seconds_longest; /* threads 1: items; longest ones */
 } snow_stats;
 SNOW_RECORD(snow_stats);
 SNOW_API snow_status snow_frame_new(snow_context *context, snow_frame **out);

@@ -38,6 +38,8 @@ struct snow_context {
     uint64_t bytes, peak;   /* allocated now; the most so far */
     uint64_t limit;         /* of bytes; 0: none */
     struct snow_pool *pool; /* threads (thread_pool.h), NULL until needed */
+    double shared, longest; /* seconds of batches by one thread, and of the
+                               longest item of each, so far */
     uint64_t generations;  /* number of generations given out, which distinguish
                               objects */
     uint64_t bytes_read;   /* from files */

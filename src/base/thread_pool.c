@@ -243,13 +243,19 @@ static void close_batch(snow_pool *pool, snow_batch *batch) {
 }
 
 /* Without threads. */
-static void do_alone(snow_monitor *monitor, int64_t items, snow_work_fn *work,
+static void do_alone(snow_context *context, int64_t items, snow_work_fn *work,
                      void *job) {
+    double mark = snow_seconds(), longest = 0;
     for (int64_t item = 0; item < items; item++) {
-        if (snow_monitor_item(monitor, 0, item, items))
-            return;
+        double took = 0;
+        if (snow_monitor_item(context->monitor, 0, item, items))
+            break;
         work(job, item, 0);
+        snow_lap(&mark, &took);
+        longest = took > longest ? took : longest;
+        context->shared += took;
     }
+    context->longest += longest;
 }
 
 snow_status snow_parallel(snow_context *context, int threads, int64_t items,
@@ -270,7 +276,7 @@ snow_status snow_parallel(snow_context *context, int threads, int64_t items,
         close_batch(pool, &pool->call);
         pthread_mutex_unlock(&pool->lock);
     } else
-        do_alone(monitor, items, work, job);
+        do_alone(context, items, work, job);
     snow_monitor_batch(monitor);
     return snow_monitor_status(monitor);
 }

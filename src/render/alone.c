@@ -153,6 +153,10 @@ static snow_status display(snow_picture *p, snow_status status) {
         SNOW_TRY(show(p));
     p->stats.seconds_frame = snow_seconds() - p->start;
     p->stats.cpu_frame = snow_cpu_seconds() - p->start_cpu;
+    if (p->stats.threads > 1)
+        return SNOW_STATUS_OK;
+    p->stats.seconds_shared = p->frame->context->shared - p->start_shared;
+    p->stats.seconds_longest = p->frame->context->longest - p->start_longest;
     return SNOW_STATUS_OK;
 }
 

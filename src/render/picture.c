@@ -116,6 +116,8 @@ snow_status snow_picture_plan(snow_picture *p, const snow_request *asked) {
         (snow_ranks_stats){.size = sizeof p->ranks_stats, .ranks = 1};
     p->start = snow_seconds();
     p->start_cpu = snow_cpu_seconds();
+    p->start_shared = p->frame->context->shared;
+    p->start_longest = p->frame->context->longest;
     request.settings = &settings;
     request.view = &p->view;
     snow_status found = read_request(p, asked, &settings);

@@ -101,7 +101,7 @@ struct snow_picture {
     snow_image *near;          /* depths of the local image */
     snow_stats stats, unused; /* of the passes that draw the picture; depths' */
     snow_ranks_stats ranks_stats;
-    double start, start_cpu;
+    double start, start_cpu, start_shared, start_longest;
     bool ahead; /* the local image is begun before it is asked for */
     snow_line_batch *drawing; /* of it, until its end; or NULL */
     bool aside;      /* another picture's local image is still needed */
@@ -147,8 +147,8 @@ bool snow_group_rises(const snow_placement *placement, snow_group_node node);
 extern const snow_render_method snow_method_footprint, snow_method_groups,
     snow_method_raycast, snow_method_shear_warp;
 
-/* These belong to snow_method_footprint (footprint/footprint.c). The first frees
- * its buffers, which are kept from picture to picture; adds a job's
+/* These belong to snow_method_footprint (footprint/footprint.c). The first
+ * frees its buffers, which are kept from picture to picture; adds a job's
  * voxels and bytes to job->stats, once its image is made. Errors:
  * SNOW_STATUS_NO_MEMORY. */
 void snow_footprint_buffers_free(snow_footprint_buffers *buffers);

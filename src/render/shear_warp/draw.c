@@ -322,6 +322,15 @@ static void draw_tile(void *of, int64_t item, int worker) {
                     behind && !splat.resumes);
 }
 
+/* The next tile of several threads. */
+static void draw_turn(void *of, int64_t item, int worker) {
+    const snow_value_drawing *job = of;
+    snow_value_turn *turn = &job->path->image->turns[item];
+    const double begin = snow_seconds();
+    draw_tile(of, turn->tile, worker);
+    turn->seconds = (float)(snow_seconds() - begin);
+}
+
 /* The same in a layer of a deterministic picture. */
 static void draw_layer(const snow_value_drawing *job, int layer, int64_t item,
                        void *scratch, float *pixels) {
@@ -391,9 +400,14 @@ static snow_status draw_whole(snow_value_path *path,
                               const snow_value_params *params,
                               snow_stats *stats) {
     double mark = snow_seconds();
+    snow_work_fn *work = work_of(params);
+    if (work == draw_tile && params->settings->threads > 1) {
+        SNOW_TRY(snow_value_order_tiles(path->context, path->image));
+        work = draw_turn;
+    }
     SNOW_TRY(snow_parallel(path->context, params->settings->threads,
-                           (int64_t)snow_value_tiles(path->image),
-                           work_of(params), &path->drawing));
+                           (int64_t)snow_value_tiles(path->image), work,
+                           &path->drawing));
     snow_value_end_image(path->image);
     snow_lap(&mark, &stats->seconds_splat);
     snow_value_prepare_axis(path, params, stats->seconds_splat);

@@ -72,6 +72,12 @@ typedef struct snow_value_operator {
     void (*finish)(const snow_value_path *path, float *pixels, int count);
 } snow_value_operator;
 
+/* A tile, and how long it took in the picture before. */
+typedef struct snow_value_turn {
+    int32_t tile;
+    float seconds;
+} snow_value_turn;
+
 /* The image on the lattice. */
 typedef struct snow_value_image {
     const snow_value_path *path;
@@ -84,6 +90,8 @@ typedef struct snow_value_image {
     unsigned char *drawn;            /* its tiles */
     unsigned char *current;          /* those that this picture has made */
     unsigned char *blocks;           /* its blocks, of a quincunx */
+    snow_value_turn *turns;          /* its tiles, as threads take them, ... */
+    size_t turn_count;               /* ... and as many more */
     snow_shear_warp_warping warping; /* of that */
     /* What means read: the same, or an image halved. */
     snow_shear_warp_warping shown;
@@ -238,6 +246,13 @@ snow_status snow_value_describe_image(snow_value_path *path,
 
 /* When all of it is drawn. */
 void snow_value_end_image(snow_value_image *image);
+
+/* --- order.c --- */
+
+/* The tiles in the order in which threads are to take them.  Errors:
+ * SNOW_STATUS_NO_MEMORY. */
+snow_status snow_value_order_tiles(snow_context *context,
+                                   snow_value_image *image);
 
 /* --- parts.c --- */
 

@@ -40,6 +40,7 @@ void snow_value_path_free(snow_value_path *path) {
         snow_release(context, path->images[n].drawn);
         snow_release(context, path->images[n].current);
         snow_release(context, path->images[n].blocks);
+        snow_release(context, path->images[n].turns);
         snow_release(context, path->images[n].halved);
     }
     snow_line_batch_fini(&path->batch);

@@ -35,6 +35,13 @@ for row in rows:
                 "cpu_times_original", "bytes_per_interesting_voxel"):
         assert key in row, (key, row)
     assert row["verified"] is True
+    # Work that n threads divide takes at least an n-th of the time.
+    for n in (8, 16, 64):
+        times = row["predicted_%d_threads" % n]
+        assert (times is None) == (row["threads"] > 1), row
+        assert times is None or 0 < times <= n, row
+    assert row["threads"] > 1 or row["times_one_thread"] == 1, row
+    assert row["threads"] > 1 or 0 <= row["serial_ms"] <= row["min_ms"], row
     assert 0 < row["min_ms"] <= row["median_ms"], row
     assert math.isclose(row["frames_per_second"], 1000 / row["median_ms"])
 
@@ -83,6 +90,7 @@ prints '^flags: .* isa .* load average [0-9.]+$'
 prints '^1 thread: reads [0-9.]+ GB/s, [0-9]+ GFLOP/s'
 prints '^Engine 40x40x32 \(phantom:engine\), translucent rgba unshaded, 64x64, threshold 10: sparse'
 prints '^shear-warp normal  *tent  *2   1 '
+prints '^threads  *serial% '
 check "only what was asked for" \
     [ -z "$(grep -E 'original|tested|footprint|draft|opaque|phong' "$OUT" |
         grep -v '^tested:\|^rates;\|^way ')" ]
