@@ -20,7 +20,7 @@ static void check_message(const char *text, size_t length) {
     if (length > MESSAGE_BYTES || !m.tree)
         abort();
     if (m.kind == MESSAGE_SET)
-        json_object_foreach(m.recipe, key, value) if (!message_may_set(key))
+        json_object_foreach(m.keys, key, value) if (!message_may_set(key))
             abort();
     char *written = json_dumps(m.tree, JSON_COMPACT | JSON_REAL_PRECISION(17));
     if (!written)

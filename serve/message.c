@@ -89,11 +89,11 @@ static bool is_shallow(const char *text, size_t length) {
     return true;
 }
 
-static bool read_n(const json_t *tree, uint32_t *out) {
-    const json_t *n = json_object_get(tree, "n");
-    json_int_t value = json_integer_value(n);
+static bool read_number(const json_t *tree, const char *key, uint32_t *out) {
+    const json_t *number = json_object_get(tree, key);
+    json_int_t value = json_integer_value(number);
     *out = (uint32_t)value;
-    return json_is_integer(n) && value >= 0 && value <= UINT32_MAX;
+    return json_is_integer(number) && value >= 0 && value <= UINT32_MAX;
 }
 
 static const char *read_hello(message *m) {
@@ -142,14 +142,14 @@ static const char *read_set(message *m) {
     const char *key;
     json_t *value;
     void *next;
-    m->recipe = json_object_get(m->tree, "recipe");
-    if (!read_n(m->tree, &m->n) || !json_is_object(m->recipe))
-        return "set: needs a number n and a recipe";
-    json_object_foreach_safe(m->recipe, next, key, value) {
+    m->keys = json_object_get(m->tree, "keys");
+    if (!read_number(m->tree, "step", &m->n) || !json_is_object(m->keys))
+        return "set: needs the number of a step, and keys";
+    json_object_foreach_safe(m->keys, next, key, value) {
         if (is_settable(key, value))
             continue;
         note_left_out(m, key);
-        json_object_del(m->recipe, key);
+        json_object_del(m->keys, key);
     }
     return NULL;
 }
@@ -161,7 +161,7 @@ static const char *read_moving(message *m) {
 }
 
 static const char *read_ack(message *m) {
-    return read_n(m->tree, &m->n) ? NULL : "ack: needs a number n";
+    return read_number(m->tree, "n", &m->n) ? NULL : "ack: needs a number n";
 }
 
 static const char *read_ask(message *m) {
@@ -240,9 +240,9 @@ void frame_head_set_n(unsigned char head[32], uint32_t n) {
     put_u32(head + 4, n);
 }
 
-void state_text_set_n(unsigned char *text, uint32_t n) {
+void state_text_set_step(unsigned char *text, uint32_t step) {
     char digits[16];
-    snprintf(digits, sizeof digits, "%-10u", n);
+    snprintf(digits, sizeof digits, "%-10u", step);
     memcpy(text + strlen(STATE_HEAD), digits, 10);
 }
 

@@ -2,7 +2,7 @@
  * is done with them; and the head of a picture that is sent to it.
  *
  *   {"t": "hello", "token": "...", "wants": ["jpeg", "webp", "png"]}
- *   {"t": "set", "n": 17, "recipe": {"azimuth": 30, "preset": null}}
+ *   {"t": "set", "step": 17, "keys": {"azimuth": 30, "preset": null}}
  *   {"t": "moving", "on": true}
  *   {"t": "ack", "n": 17}
  *   {"t": "ask", "what": "histogram", ...}
@@ -31,12 +31,12 @@ typedef enum message_kind {
 
 typedef struct message {
     message_kind kind;
-    uint32_t n;         /* of set and ack */
+    uint32_t n;         /* the step of set, or n of ack */
     bool on;            /* of moving */
     bool webp;          /* of hello: the page can show WebP */
     const char *token;  /* of hello */
     const char *what;   /* of ask */
-    json_t *recipe;     /* of set: keys that change; null takes one out */
+    json_t *keys;       /* of set: those that change; null takes one out */
     char left_out[160]; /* what was not understood, for the page; "": nothing */
     json_t *tree;       /* owns the texts */
 } message;
@@ -103,9 +103,9 @@ void set_log_note(set_log *log, uint32_t n, uint32_t revision);
 /* The newest message that a revision has in it; 0: none. */
 uint32_t set_log_n(const set_log *log, uint32_t revision);
 
-/* What a text of the state begins with; %-10u is n, of which a page's own is
- * put in its place when it is sent: its newest message that the state has. */
-#define STATE_HEAD "{\"t\":\"state\",\"n\":"
-void state_text_set_n(unsigned char *text, uint32_t n);
+/* What a text of the state begins with; %-10u is the step, of which a page's own
+ * is put in its place when it is sent: its newest set that the state has. */
+#define STATE_HEAD "{\"t\":\"state\",\"step\":"
+void state_text_set_step(unsigned char *text, uint32_t step);
 
 #endif

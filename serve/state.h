@@ -55,10 +55,9 @@ void state_touch(viewer_state *s);
  * had named (kept_look.h). */
 bool state_wrote(viewer_state *s);
 
-/* The state as a message {"t": "state", "n": 0, "touched": false, "computed":
- * ["range"], "recipe":
- * {...}} (message.h)
- * for a page, or for all (0) but one; NULL: no memory. */
+/* The state as a message {"t": "state", "step": 0, "touched": false, "keys":
+ * {"opacity": ...}, "computed": {"range": ...}} (message.h) for a page, or for
+ * all (0) but one; NULL: no memory.  Pages never send back what is computed. */
 outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except);
 
 /* Sizes of pages, each once: of a state at rest each gets a picture. */

@@ -203,36 +203,34 @@ json_t *state_recipe(viewer_state *s) {
 
 outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except) {
     const char *key;
-    json_t *value, *shown = json_object();
+    json_t *value, *set = json_object(), *computed = json_object();
     pthread_mutex_lock(&s->lock);
     json_object_foreach(s->recipe, key, value) if (message_may_set(key))
         json_object_set_new(
-            shown, key, is_switch(key) ? json_true() : json_deep_copy(value));
+            json_object_get(s->look.written, key) ? computed : set, key,
+            is_switch(key) ? json_true() : json_deep_copy(value));
     uint32_t revision = s->revision;
     const bool touched = s->touched;
-    json_t *computed = json_array();
-    json_object_foreach(s->look.written, key, value)
-        json_array_append_new(computed, json_string(key));
     pthread_mutex_unlock(&s->lock);
-    char *text = json_dumps(shown, JSON_COMPACT | JSON_REAL_PRECISION(17));
-    char *written = json_dumps(computed, JSON_COMPACT);
-    json_decref(shown);
+    char *keys = json_dumps(set, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    char *others = json_dumps(computed, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    json_decref(set);
     json_decref(computed);
     size_t most =
-        (text ? strlen(text) : 0) + (written ? strlen(written) : 0) + 96;
-    outgoing *made = text && written ? outgoing_new(most) : NULL;
+        (keys ? strlen(keys) : 0) + (others ? strlen(others) : 0) + 96;
+    outgoing *made = keys && others ? outgoing_new(most) : NULL;
     if (made) {
         made->length = (size_t)snprintf(
             (char *)made->bytes, most,
-            STATE_HEAD "%-10u,\"touched\":%s,\"computed\":%s,\"recipe\":%s}",
-            0U, touched ? "true" : "false", written, text);
+            STATE_HEAD "%-10u,\"touched\":%s,\"keys\":%s,\"computed\":%s}",
+            0U, touched ? "true" : "false", keys, others);
         made->is_text = true;
         made->topic = MESSAGE_STATE;
         made->client = client;
         made->except = except;
         made->revision = revision;
     }
-    free(text);
-    free(written);
+    free(keys);
+    free(others);
     return made;
 }

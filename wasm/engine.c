@@ -94,7 +94,7 @@ EMSCRIPTEN_KEEPALIVE bool engine_open(const char *path, const char *recipe) {
 
 static void set(const message *m) {
     uint32_t revision;
-    char *fault = state_set(e.state, m->recipe, &revision);
+    char *fault = state_set(e.state, m->keys, &revision);
     set_log_note(&e.sets, m->n, revision);
     if (fault)
         answer_said(e.box, CLIENT, fault);
@@ -147,7 +147,7 @@ EMSCRIPTEN_KEEPALIVE const unsigned char *engine_take(void) {
     if (p->topic == MESSAGE_PICTURE)
         frame_head_set_n(p->bytes, n);
     if (p->topic == MESSAGE_STATE)
-        state_text_set_n(p->bytes, n);
+        state_text_set_step(p->bytes, n);
     return p->bytes;
 }
 

@@ -1,95 +1,113 @@
 // channels.js - the channels of a file: which are mixed, in which colour, range
-// and opacity.  A channel is as the look has it: [0, 'DAPI', 'blue', '#0000ff',
-// 10, 200, 1], without a colour where it is drawn alone.
+// and opacity.
 
 import {apart, button, check, ink, make, number, section, show, slider} from './controls.js';
+import {listed, mixed} from './look.js';
+import {known} from './store.js';
 
 const CHANNELS_MOST = 8; // SNOW_CHANNELS_MAX of volume.h
 
-export const mixed = look => Boolean(look?.channels?.[0]?.[2]);
-
-/** Changes of a recipe: the file says what is not known of a channel. */
-export const listed = channels => ({channel: channels.map(([index, , map, , low, high, opacity]) =>
-    (map ? [index, map, ...low < high ? [`${low}..${high}`] : [], opacity] : [index]).join(':')).join()});
+/** @typedef {import('./types').Channel} Channel */
 
 export class Channels {
-    /** `plain` are the changes that take a look of one volume away. */
-    constructor(recipe, page, plain) {
-        Object.assign(this, {recipe, page, plain});
-        this.known = [];
+    /** @param {import('./store.js').Store} store
+     * @param {import('./types').Changes} plain changes that take a look of one volume away */
+    constructor(store, plain) {
+        this.store = store;
+        this.plain = plain;
+        /** @type {Channel[]} */
+        this.known = []; // as each was drawn last
+        /** @type {ReturnType<Channels['row']>[]} */
         this.rows = [];
+        /** @type {object|null} */
+        this.before = null; // the look that *All* shall change
         this.list = make('div', {});
         this.element = section('Channels', true, this.list, button('All',
             'All channels as the file shows them', () => this.all()));
     }
 
     get first() {
-        return [...this.page.info.channels.keys()].slice(0, CHANNELS_MOST);
+        return [...this.names.keys()].slice(0, CHANNELS_MOST);
+    }
+
+    get names() {
+        return this.store.info?.channels ?? [];
+    }
+
+    get drawn() {
+        return this.store.look?.channels ?? [];
     }
 
     /** As the file shows them, if these are all; else a list, which has the file's colours.
      * A file of --tf is of one volume. */
     all() {
-        const {recipe, page} = this, usual = 'channel' in recipe.keys && !page.info.tf;
-        this.before = usual && page.look;
-        recipe.set({...this.plain, channel: usual ? null : this.first.join()});
+        const {store} = this, usual = 'channel' in store.keys && !store.info?.tf;
+        this.before = usual ? store.answered : null;
+        store.set({...this.plain, channel: usual ? null : this.first.join()});
     }
 
-    /** The next change may come before the server's look. */
+    /** More than can be mixed are refused, and said.
+     * @param {(Channel|[number])[]} channels */
     set(channels) {
-        const {look} = this.page, begins = mixed(look) ? {} : this.plain;
-        if (channels.length <= CHANNELS_MOST) // more are refused
-            look.channels = channels;
-        this.recipe.set({...begins, ...listed(channels)});
+        this.store.set({...mixed(this.store.look) ? {} : this.plain, ...listed(channels)});
     }
 
-    /** One of them stays. */
+    /** One of them stays.
+     * @param {number} index
+     * @param {boolean} on */
     turn(index, on) {
-        const others = this.page.look.channels.filter(one => one[0] !== index);
+        const others = this.drawn.filter(one => one[0] !== index);
         if (on || others.length)
             this.set(on ? [...others, this.known[index] ?? [index]] : others);
         else
             this.update();
     }
 
+    /** @param {number} index
+     * @param {Partial<Record<2|3|4|5|6, string|number>>} changes */
     put(index, changes) {
-        this.set(this.page.look.channels.map(one => one[0] === index ? Object.assign([...one], changes) : one));
+        this.set(this.drawn.map(one => one[0] === index
+            ? /** @type {Channel} */ (Object.assign([...one], changes)) : one));
     }
 
+    /** @param {number} index
+     * @param {string} name */
     row(index, name) {
         const box = check(name, on => this.turn(index, on));
         const color = ink(`colour of ${name}`, value => this.put(index, {2: value, 3: value}));
         const ends = ['lowest', 'highest'].map((word, i) => number(`${word} value of the range of ${name}`,
-            value => (i ? this.known[index][4] < value : value < this.known[index][5]) &&
-                this.put(index, {[4 + i]: value})));
-        const opacity = slider(`opacity of ${name}`, 0, 1, 0.02, this.recipe, value => this.put(index, {6: value}));
+            value => {
+                if (i ? this.known[index][4] < value : value < this.known[index][5])
+                    this.put(index, i ? {5: value} : {4: value});
+            }));
+        const opacity = slider(`opacity of ${name}`, 0, 1, 0.02, this.store, value => this.put(index, {6: value}));
         const more = make('div', {className: 'row'}, color, ...ends, opacity);
         return {box: box.box, color, ends, opacity, more, element: make('div', {}, box.label, more)};
     }
 
     update() {
-        const {info, look} = this.page, drawn = look?.channels ?? [], names = info?.channels ?? [];
+        const {drawn, names, store} = this;
         this.element.hidden = names.length < 2;
-        for (const one of [...names.map((name, i) => [i, name]), ...drawn])
-            if (!this.rows[one[0]]) {
-                this.rows[one[0]] = this.row(one[0], one[1] || `channel ${one[0]}`);
-                this.list.append(this.rows[one[0]].element);
+        for (const [index, name] of [...names.entries(), ...drawn])
+            if (!this.rows[index]) {
+                this.rows[index] = this.row(index, name || `channel ${index}`);
+                this.list.append(this.rows[index].element);
             }
-        if (this.before && look !== this.before) {
+        if (this.before && store.answered !== this.before) {
             this.before = null;
-            if (drawn.length < this.first.length)
-                this.recipe.set({channel: this.first.join()});
+            if ((known(store.answered).channels ?? []).length < this.first.length)
+                store.set({channel: this.first.join()});
         }
         this.rows.forEach(({box, color, ends, opacity, more}, index) => {
             const one = drawn.find(([k]) => k === index);
             box.checked = Boolean(one);
             more.hidden = !one?.[2];
-            if (more.hidden)
+            if (!one?.[2])
                 return;
             this.known[index] = one;
             color.value = one[3];
-            apart(one.slice(4, 6), 5).forEach((value, i) => show(ends[i], value));
-            opacity.value = one[6];
+            apart([one[4], one[5]], 5).forEach((value, i) => show(ends[i], value));
+            opacity.value = `${one[6]}`;
         });
     }
 }

@@ -5,7 +5,19 @@ import {add, axes, cross, dot} from './camera.js';
 
 export const PLANES_MOST = 6;
 
-/** The corners of the volume in the world, lowest and highest. */
+/** @typedef {import('./types').Keys} Keys */
+/** @typedef {import('./types').Info} Info */
+/** @typedef {import('./types').Plane} Plane */
+/** @typedef {import('./types').Pair} Pair */
+/** @typedef {{clip: Plane[]|null}} Change */
+
+/** What a handle moves: a place on it, the way in which it moves, and the change of a move.
+ * @typedef {{place: number[], axis: number, way: number[], value: number, low: number, high: number,
+ *   name: string, fixed?: boolean, move: (keys: Keys, to: number) => Change}} Grip */
+
+/** The corners of the volume in the world, lowest and highest.
+ * @param {Info} info
+ * @returns {Pair[]} */
 function bounds(info) {
     return info.matrix.map((line, i) => {
         let low = line[3], high = line[3];
@@ -18,17 +30,23 @@ function bounds(info) {
     });
 }
 
+/** @param {number} value */
 const digits = value => +value.toPrecision(6);
+/** @param {number[]} plane */
 const isTilted = plane => plane.slice(0, 3).filter(x => x !== 0).length > 1;
 
-/** No plane can be added: ends that cut nothing stay. */
-export const isFull = keys => keys.clip?.length >= PLANES_MOST;
+/** No plane can be added: ends that cut nothing stay.
+ * @param {Keys} keys */
+export const isFull = keys => (keys.clip?.length ?? 0) >= PLANES_MOST;
 
+/** @param {Keys} keys */
 export const tilted = keys => (keys.clip ?? []).filter(isTilted);
 
-/** The lowest and highest visible place along each axis. */
+/** The lowest and highest visible place along each axis.
+ * @param {Pair[]} box
+ * @param {Keys} keys */
 function ends(box, keys) {
-    const all = box.map(pair => [...pair]);
+    const all = box.map(([low, high]) => [low, high]);
     for (const [a, b, c, d] of (keys.clip ?? []).filter(plane => !isTilted(plane))) {
         const axis = [a, b, c].findIndex(x => x !== 0), sign = [a, b, c][axis];
         all[axis][sign > 0 ? 1 : 0] = d / sign;
@@ -36,7 +54,13 @@ function ends(box, keys) {
     return all;
 }
 
-/** Changes of the recipe that move one end. */
+/** Changes of the recipe that move one end.
+ * @param {Pair[]} box
+ * @param {Keys} keys
+ * @param {number} axis
+ * @param {number} end
+ * @param {number} value
+ * @returns {Change} */
 function moved(box, keys, axis, end, value) {
     const all = ends(box, keys), margin = (box[axis][1] - box[axis][0]) / 200;
     all[axis][end] = end ? Math.max(value, all[axis][0] + margin)
@@ -46,6 +70,7 @@ function moved(box, keys, axis, end, value) {
         const edge = box[i][side], inside = side ? edge - place : place - edge;
         if (inside <= 1e-6 * (box[i][1] - box[i][0]))
             return;
+        /** @type {Plane} */
         const plane = [0, 0, 0, digits(side ? place : -place)];
         plane[i] = side ? 1 : -1;
         planes.push(plane);
@@ -53,29 +78,42 @@ function moved(box, keys, axis, end, value) {
     return {clip: planes.length ? planes : null};
 }
 
-/** Changes that put a tilted plane elsewhere; `d` null removes it. */
+/** Changes that put a tilted plane elsewhere; `d` null removes it.
+ * @param {Keys} keys
+ * @param {number} index
+ * @param {number|null} d
+ * @returns {Change} */
 export function tiltedTo(keys, index, d) {
     const all = tilted(keys), old = all[index];
-    const planes = keys.clip.map(plane => plane !== old ? plane
-        : d === null ? null : [...plane.slice(0, 3), digits(d)]).filter(Boolean);
+    const planes = (keys.clip ?? []).flatMap(plane => {
+        const [a, b, c] = plane;
+        return plane !== old ? [plane] : d === null ? [] : [/** @type {Plane} */ ([a, b, c, digits(d)])];
+    });
     return {clip: planes.length ? planes : null};
 }
 
-/** Changes that cut away what is before the target, as it is seen now. */
+/** Changes that cut away what is before the target, as it is seen now.
+ * @param {Keys} keys
+ * @param {Info} info
+ * @returns {Change} */
 export function facing(keys, info) {
     let normal = axes(keys, info).back.map(x => Math.round(1e4 * x) / 1e4);
     if (!isTilted(normal)) // by a hair, as others have sliders
         normal = normal.map(x => x || 1e-4);
-    const d = dot(normal, keys.target ?? info.middle);
-    return {clip: [...keys.clip ?? [], [...normal, digits(d)]]};
+    const [a, b, c] = normal, d = dot(normal, keys.target ?? info.middle);
+    return {clip: [...keys.clip ?? [], [a, b, c, digits(d)]]};
 }
 
-/** Each end and plane that a handle moves: a place on it, beside the middle where
- * drags turn the picture, the way in which it moves, its name, and the changes of a
- * move. */
+/** Each end and plane that a handle moves, by a place on it beside the middle, where
+ * drags turn the picture.
+ * @param {Keys} keys
+ * @param {Info} info
+ * @param {string[]} names
+ * @returns {Grip[]} */
 export function grips(keys, info, names) {
     const box = bounds(info), all = ends(box, keys);
     const middle = all.map(([low, high]) => (low + high) / 2);
+    /** @type {Grip[]} */
     const list = all.flatMap((pair, axis) => pair.map((value, end) => ({
         place: middle.map((x, i) => i === axis ? value : x), axis,
         way: middle.map((_, i) => i === axis ? 1 : 0), value, low: box[axis][0], high: box[axis][1],

@@ -4,14 +4,23 @@
 import {button, listen, make, number, row, short, show, surface} from './controls.js';
 import {STEPS} from './keys.js';
 
+/** @typedef {import('./store.js').Store} Store */
+/** @typedef {import('./types').Point} Point */
+/** @typedef {{x: number, y: number, value: number, opacity: number}} Place */
+
+/** Which points are edited: their key, and those in use where it is not set.
+ * @typedef {{key: 'opacity'|'gradient-opacity', name: string, usual: (store: Store) => Point[],
+ *   range: (store: Store) => import('./types').Histogram|null}} Kind */
+
 const NEAR = 12; // pixels
 const EDGE = 8;
 
-/** Of a look: the key of its points, and those in use where it is not set. */
+/** @type {Kind} */
 export const BY_VALUE = {key: 'opacity', name: 'value',
-    usual: page => page.look?.opacity ?? [], range: page => page.histogram};
+    usual: store => store.look?.opacity ?? [], range: store => store.histogram};
 
-/** By magnitude of the gradient, up to a step of a quarter of all values. */
+/** By magnitude of the gradient, up to a step of a quarter of all values.
+ * @type {Kind} */
 export const BY_GRADIENT = {key: 'gradient-opacity', name: 'gradient', usual: () => [],
     range({histogram, info}) {
         const step = Math.min(...info?.spacing ?? [1]);
@@ -19,8 +28,17 @@ export const BY_GRADIENT = {key: 'gradient-opacity', name: 'gradient', usual: ()
     }};
 
 export class Editor {
-    constructor(recipe, page, kind = BY_VALUE) {
-        Object.assign(this, {recipe, page, kind, log: true, chosen: -1});
+    /** @param {Store} store */
+    constructor(store, kind = BY_VALUE) {
+        this.store = store;
+        this.kind = kind;
+        this.log = true;
+        this.chosen = -1;
+        /** Where a drag began.
+         * @type {{place: Place, points: Point[]}|null} */
+        this.from = null;
+        /** @type {unknown[]} */
+        this.drawn = []; // what is shown
         this.canvas = make('canvas', {className: 'editor', tabIndex: 0,
             role: 'img', 'aria-label': `Opacity by ${kind.name}, over the histogram. ` +
             'Arrow keys move the chosen point, Page keys choose another, Insert ' +
@@ -28,20 +46,20 @@ export class Editor {
         this.value = number(`${kind.name} of the chosen point`, value => this.put(value, null));
         this.opacity = number(`opacity at the chosen ${kind.name}`,
             value => this.put(null, Math.max(0, Math.min(1, value))), 0.01);
-        this.opacity.min = 0;
-        this.opacity.max = 1;
+        this.opacity.min = '0';
+        this.opacity.max = '1';
         listen(this.canvas, this);
         new ResizeObserver(() => this.draw()).observe(this.canvas);
     }
 
     get element() {
-        const {recipe} = this;
+        const {store} = this;
         const scale = button('Log', 'Logarithmic counts of the histogram', () => {
             this.log = !this.log;
-            scale.setAttribute('aria-pressed', this.log);
+            scale.setAttribute('aria-pressed', `${this.log}`);
             this.draw();
         });
-        scale.setAttribute('aria-pressed', this.log);
+        scale.setAttribute('aria-pressed', `${this.log}`);
         return make('div', {}, this.canvas,
             row(this.kind === BY_VALUE ? 'Value' : 'Gradient', this.value,
                 make('label', {}, 'Opacity ', this.opacity)),
@@ -50,39 +68,41 @@ export class Editor {
                 button('Remove', 'Remove the chosen point', () => this.remove()),
                 ...this.kind === BY_VALUE ? [scale,
                     button('Automatic', 'Opacity of the preset',
-                        () => recipe.set({opacity: null, range: null}))]
+                        () => store.set({opacity: null, range: null}))]
                     : [button('None', 'The gradient does not matter',
-                        () => recipe.set({[this.kind.key]: null}))]));
+                        () => store.set({[this.kind.key]: null}))]));
     }
 
     /** The points in use: those of the recipe, else of the look. */
     get points() {
-        return this.recipe.keys[this.kind.key] ?? this.kind.usual(this.page);
+        return this.store.keys[this.kind.key] ?? this.kind.usual(this.store);
     }
 
     /** A recipe holds fewer points than a file: such a look is shown, not changed. */
     get isWhole() {
-        const {look, say} = this.page;
-        const whole = this.kind !== BY_VALUE || this.recipe.keys.opacity ||
+        const {store, store: {look}} = this;
+        const whole = this.kind !== BY_VALUE || store.keys.opacity ||
             (look?.count ?? 0) <= this.points.length;
         if (!whole)
-            say(`The look has ${look.count} points, too many to change here; choose a preset.`);
+            store.say(`The look has ${look?.count} points, too many to change here; choose a preset.`);
         return whole;
     }
 
     /** What the axis spans: the histogram, and the points. */
     get span() {
-        const histogram = this.kind.range(this.page), points = this.points;
+        const histogram = this.kind.range(this.store), points = this.points;
         const low = Math.min(histogram?.lo ?? Infinity, points[0]?.[0] ?? Infinity);
         const high = Math.max(histogram?.hi ?? -Infinity, points.at(-1)?.[0] ?? -Infinity);
         return low < high ? [low, high] : [low - 1, low + 1];
     }
 
+    /** @param {number} value */
     x(value) {
         const [low, high] = this.span;
         return EDGE + (value - low) / (high - low) * (this.canvas.clientWidth - 2 * EDGE);
     }
 
+    /** @param {number} opacity */
     y(opacity) {
         return this.bottom - opacity * (this.bottom - EDGE);
     }
@@ -91,7 +111,9 @@ export class Editor {
         return this.canvas.clientHeight - 18;
     }
 
-    /** Value and opacity at a place of the canvas. */
+    /** Value and opacity at a place of the canvas.
+     * @param {MouseEvent} event
+     * @returns {Place} */
     at(event) {
         const {offsetX: x, offsetY: y} = event, [low, high] = this.span;
         return {x, y,
@@ -99,6 +121,7 @@ export class Editor {
             opacity: Math.max(0, Math.min(1, (this.bottom - y) / (this.bottom - EDGE)))};
     }
 
+    /** @param {Place} place */
     near(place) {
         let best = -1, least = NEAR;
         this.points.forEach(([value, opacity], i) => {
@@ -109,22 +132,32 @@ export class Editor {
         return best;
     }
 
+    /** @param {Point[]} points */
     set(points, chosen = this.chosen) {
         if (!this.isWhole)
             return;
         this.chosen = chosen;
-        this.recipe.set({[this.kind.key]: points});
+        this.store.set({[this.kind.key]: points});
     }
 
+    /** @param {number} value */
     digits(value) {
         const [low, high] = this.span;
         const places = Math.max(0, Math.ceil(3 - Math.log10(high - low)));
         return +value.toFixed(Math.min(12, places));
     }
 
-    /** Moves the chosen point, between its neighbours. */
+    /** A copy, of which points may be changed.
+     * @returns {Point[]} */
+    get copy() {
+        return this.points.map(([value, opacity]) => [value, opacity]);
+    }
+
+    /** Moves the chosen point, between its neighbours.
+     * @param {number|null} value
+     * @param {number|null} opacity */
     put(value, opacity) {
-        const points = this.points.map(point => [...point]), point = points[this.chosen];
+        const points = this.copy, point = points[this.chosen];
         if (!point)
             return;
         const low = points[this.chosen - 1]?.[0] ?? -Infinity;
@@ -136,14 +169,16 @@ export class Editor {
         this.set(points);
     }
 
+    /** @param {Place|null} place */
     insert(place = null) {
-        const points = this.points.map(point => [...point]);
+        const points = this.copy;
         if (!points.length && !place) { // the usual beginning: edges alone
             this.set([[0, 0], [this.digits(this.span[1] / 4), 1]], 1);
             return;
         }
         const from = Math.max(0, Math.min(this.chosen, points.length - 2));
         const a = points[from] ?? [this.span[0], 0], b = points[from + 1] ?? a;
+        /** @type {Point} */
         const point = place ? [this.digits(place.value), +place.opacity.toFixed(3)]
             : [this.digits((a[0] + b[0]) / 2), +((a[1] + b[1]) / 2).toFixed(3)];
         const index = place ? points.filter(other => other[0] <= point[0]).length : from + 1;
@@ -158,6 +193,7 @@ export class Editor {
             Math.min(this.chosen, this.points.length - 2));
     }
 
+    /** @param {PointerEvent} event */
     down(event) {
         if (event.button)
             return;
@@ -165,22 +201,24 @@ export class Editor {
         this.canvas.setPointerCapture(event.pointerId);
         this.chosen = this.near(place);
         this.from = {place, points: this.points};
-        this.recipe.begin();
+        this.store.begin();
         this.draw();
     }
 
-    /** A point, or all of them where none is near. */
+    /** A point, or all of them where none is near.
+     * @param {PointerEvent} event */
     move(event) {
-        if (!this.from)
+        const {from} = this;
+        if (!from)
             return;
         const place = this.at(event);
         if (this.chosen >= 0) {
             this.put(place.value, place.opacity);
             return;
         }
-        const by = place.value - this.from.place.value;
-        if (Math.abs(place.x - this.from.place.x) > 2)
-            this.set(this.from.points.map(
+        const by = place.value - from.place.value;
+        if (Math.abs(place.x - from.place.x) > 2)
+            this.set(from.points.map(
                 ([value, opacity]) => [this.digits(value + by), opacity]));
     }
 
@@ -188,9 +226,10 @@ export class Editor {
         if (!this.from)
             return;
         this.from = null;
-        this.recipe.end();
+        this.store.end();
     }
 
+    /** @param {MouseEvent} event */
     doubled(event) {
         const place = this.at(event), index = this.near(place);
         if (index < 0) {
@@ -201,6 +240,7 @@ export class Editor {
         this.remove();
     }
 
+    /** @param {KeyboardEvent} event */
     key({key, shiftKey}) {
         const [low, high] = this.span, step = shiftKey ? 0.002 : 0.01;
         const point = this.points[this.chosen], by = STEPS[key];
@@ -222,16 +262,16 @@ export class Editor {
 
     /** After a change of the page: most change nothing here. */
     follow() {
-        const now = [this.recipe.keys[this.kind.key], this.page.look, this.page.histogram,
+        const {store} = this, now = [store.keys[this.kind.key], store.keys.range, store.answered, store.histogram,
             matchMedia('(prefers-color-scheme: light)').matches];
-        if (now.every((each, i) => each === this.drawn?.[i]))
+        if (now.every((each, i) => each === this.drawn[i]))
             return;
         this.drawn = now;
         this.draw();
     }
 
     draw() {
-        const {g} = surface(this.canvas);
+        const g = surface(this.canvas)?.g;
         if (!g)
             return;
         const style = getComputedStyle(this.canvas);
@@ -244,10 +284,13 @@ export class Editor {
         show(this.opacity, point ? short(point[1]) : '');
     }
 
+    /** @param {CanvasRenderingContext2D} g
+     * @param {string} color */
     drawHistogram(g, color) {
-        const histogram = this.kind.range(this.page);
+        const histogram = this.kind.range(this.store);
         if (!histogram?.counts.length)
             return;
+        /** @param {number} count */
         const scaled = count => this.log ? Math.log1p(count) : count;
         const top = Math.max(1, ...histogram.counts.map(scaled));
         const {bottom} = this, left = this.x(histogram.lo);
@@ -259,8 +302,9 @@ export class Editor {
         });
     }
 
+    /** @param {CanvasRenderingContext2D} g */
     drawStrip(g) {
-        const look = this.page.look;
+        const {look} = this.store;
         if (this.kind !== BY_VALUE || !look)
             return;
         const {bottom} = this, left = this.x(look.low);
@@ -271,9 +315,12 @@ export class Editor {
         });
     }
 
+    /** @param {CanvasRenderingContext2D} g
+     * @param {string} line
+     * @param {string} accent */
     drawPoints(g, line, accent) {
-        const points = this.points;
-        if (!points.length)
+        const points = this.points, last = points.at(-1);
+        if (!last)
             return;
         g.strokeStyle = line;
         g.lineWidth = 1.5;
@@ -281,7 +328,7 @@ export class Editor {
         g.moveTo(0, this.y(points[0][1]));
         for (const [value, opacity] of points)
             g.lineTo(this.x(value), this.y(opacity));
-        g.lineTo(this.canvas.clientWidth, this.y(points.at(-1)[1]));
+        g.lineTo(this.canvas.clientWidth, this.y(last[1]));
         g.stroke();
         this.canvas.dataset.points = points.map(([value, opacity]) =>
             `${Math.round(this.x(value))},${Math.round(this.y(opacity))}`).join(' ');

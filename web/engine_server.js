@@ -2,12 +2,15 @@
 // receives pictures and texts.  Of the page only this module and the first
 // lines of viewer.js know the address.
 
+import {merged} from './store.js';
+
 const MAGIC = 0x31574e53;
 const TYPES = ['', 'image/jpeg', 'image/png', 'image/webp'];
 const FRAME = 12; // ms, less than that of a screen
 const FATAL = [4400, 4401, 4429]; // a message that it does not take, the secret, too many
 
-/** @typedef {import('./types').Keys} Keys */
+/** @typedef {import('./types').Changes} Changes */
+/** @typedef {import('./types').Heard} Heard */
 
 /**
  * Events by name: 'open', 'closed', 'picture', 'small' (of a slice or a preset,
@@ -18,30 +21,33 @@ export class ServerEngine {
     /** @param {string} token */
     constructor(token) {
         this.token = token;
-        /** @type {Map<string, ((message: any) => void)[]>} */
+        /** @type {Map<keyof Heard, ((message: any) => void)[]>} */
         this.hearers = new Map();
-        this.n = 0;
+        this.step = 0; // the number of the newest set
         this.since = 0; // when what waits began to
         /** @type {Map<number, number>} */
         this.sentAt = new Map();
-        /** @type {Map<number, Keys>} */
+        /** @type {Map<number, Changes>} */
         this.unheard = new Map(); // changes that no state or picture has yet
-        /** @type {Keys|null} */
+        /** @type {Changes|null} */
         this.waiting = null; // changes that are not sent yet
         this.painting = Promise.resolve();
         this.wait = 500;
         this.flushed = 0;
-        /** @type {Keys} */
+        /** @type {Changes} */
         this.lost = {}; // what a server that went away has not heard
     }
 
-    /** @type {import('./types').Engine['on']} */
+    /** @template {keyof Heard} K
+     * @param {K} name
+     * @param {(message: Heard[K]) => void} hear */
     on(name, hear) {
         this.hearers.set(name, [...(this.hearers.get(name) ?? []), hear]);
     }
 
-    /** @param {string} name
-     * @param {any} [value] */
+    /** @template {keyof Heard} K
+     * @param {K} name
+     * @param {Heard[K]} [value] */
     tell(name, value) {
         for (const hear of this.hearers.get(name) ?? [])
             hear(value);
@@ -98,7 +104,7 @@ export class ServerEngine {
 
     /** Changes of a recipe; null takes a key out.  Sent at once, but not more often
      * than each FRAME.  One that waited does not make those of all later frames wait.
-     * @param {Keys} changes */
+     * @param {Changes} changes */
     set(changes) {
         if (!this.waiting) {
             this.since = performance.now();
@@ -110,11 +116,11 @@ export class ServerEngine {
     flush() {
         if (!this.waiting)
             return;
-        this.n++;
+        this.step++;
         this.flushed = performance.now();
-        this.sentAt.set(this.n, this.since);
-        this.unheard.set(this.n, this.waiting);
-        this.say({t: 'set', n: this.n, recipe: this.waiting});
+        this.sentAt.set(this.step, this.since);
+        this.unheard.set(this.step, this.waiting);
+        this.say({t: 'set', step: this.step, keys: this.waiting});
         this.waiting = null;
     }
 
@@ -122,9 +128,7 @@ export class ServerEngine {
     hear(data) {
         if (typeof data === 'string') {
             const message = JSON.parse(data);
-            if (message.t === 'state')
-                this.renew(message);
-            this.tell(message.t, message);
+            this.tell(message.t, message.t === 'state' ? this.renewed(message) : message);
         } else {
             this.painting = this.painting.then(() => this.paint(data)).catch(
                 error => this.tell('said', {text: `A picture cannot be shown: ${error.message}`}));
@@ -132,22 +136,20 @@ export class ServerEngine {
     }
 
     /** What the page has changed since stays on top of a state.
-     * @param {import('./types').State} state */
-    renew({n, recipe}) {
-        this.heard(n);
-        for (const changes of [...this.unheard.values(), this.waiting ?? {}])
-            for (const [key, value] of Object.entries(changes)) {
-                if (value === null)
-                    delete recipe[key];
-                else
-                    recipe[key] = value;
-            }
+     * @param {import('./types').State} state
+     * @returns {import('./types').State} */
+    renewed(state) {
+        this.heard(state.step);
+        /** @type {Changes} */
+        const changes = Object.assign({}, ...this.unheard.values(), this.waiting);
+        const computed = Object.entries(state.computed ?? {}).filter(([key]) => !(key in changes));
+        return {...state, keys: merged(state.keys, changes), computed: Object.fromEntries(computed)};
     }
 
-    /** @param {number} n */
-    heard(n) {
+    /** @param {number} step */
+    heard(step) {
         for (const key of this.unheard.keys())
-            if (key <= n)
+            if (key <= step)
                 this.unheard.delete(key);
     }
 

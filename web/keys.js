@@ -2,6 +2,7 @@
 
 import {zoomed} from './camera.js';
 import {check, make} from './controls.js';
+import {known} from './store.js';
 
 export const VIEWS = ['anterior', 'posterior', 'left', 'right', 'superior', 'inferior'];
 export const MODES = ['over', 'mip', 'minip', 'mean', 'sum', 'iso'];
@@ -19,22 +20,26 @@ const TEXTS = [['Drag', 'turn'], ['Shift or middle drag', 'move'], ['Wheel', 'zo
     ['c v', 'the command, that of a movie'], ['s', 'save the picture'], ['z Shift+z', 'undo, redo; Ctrl+z, Ctrl+y too'],
     ['?', 'this help']];
 
-/** And whether keys that are single letters act. */
-export function help(page) {
+/** And whether keys that are single letters act.
+ * @param {import('./store.js').Store} store */
+export function help(store) {
     const {box, label} = check('single letters, digits and signs act', on => {
-        page.letters = on;
+        store.letters = on;
     });
-    box.checked = page.letters;
+    box.checked = store.letters;
     return [label, make('table', {}, ...TEXTS.map(([key, text]) => make('tr', {},
         make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: text}))))];
 }
 
+/** @type {Record<string, [across: number, down: number]>} */
 export const STEPS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 
 /** Of fields of text and lists all keys are their own; sliders keep those that move them,
- * what is pressed keeps Space and Enter. */
+ * what is pressed keeps Space and Enter.
+ * @param {KeyboardEvent} event */
 function isTaken({key, target}) {
-    const at = selector => target.closest?.(selector);
+    /** @param {string} selector */
+    const at = selector => target instanceof Element && target.closest(selector);
     if (at('dialog, select, textarea, input:not([type="range"], [type="checkbox"], [type="color"])'))
         return true;
     if (at('[type="range"]'))
@@ -42,35 +47,47 @@ function isTaken({key, target}) {
     return (key === ' ' || key === 'Enter') && Boolean(at('button, summary, input'));
 }
 
-/** `actions` has what the buttons do, by name.  `page.letters` says whether single letters
- * act, which a user may not want who speaks to the machine. */
-export function listenToKeys(recipe, page, actions, pointer) {
+/** `store.letters` says whether single letters act, which a user may not want who speaks to
+ * the machine.
+ * @param {import('./store.js').Store} store
+ * @param {import('./types').Actions} actions
+ * @param {import('./pointer.js').Pointer} pointer */
+export function listenToKeys(store, actions, pointer) {
     document.addEventListener('keydown', event => {
         const {key, ctrlKey, metaKey, altKey, shiftKey} = event, control = ctrlKey || metaKey;
-        if (isTaken(event) || event.defaultPrevented || altKey || !page.info || !page.look)
+        if (isTaken(event) || event.defaultPrevented || altKey || !store.info || !store.look)
             return;
-        const step = control && {z: shiftKey ? 'redo' : 'undo', y: 'redo'}[key.toLowerCase()];
+        const back = control && key.toLowerCase() === 'z' && !shiftKey;
+        const step = back || control && /^[zy]$/i.test(key);
         if (step)
-            actions[step]();
-        if (step || (!control && (page.letters || key.length > 1) && press(event, recipe, page, actions, pointer)))
+            actions[back ? 'undo' : 'redo']();
+        if (step || (!control && (store.letters || key.length > 1) && press(event, store, actions, pointer)))
             event.preventDefault();
     });
 }
 
-function press(event, recipe, page, actions, pointer) {
+/** @type {Record<string, keyof import('./types').Actions>} */
+const NAMED = {r: 'fit', m: 'mode', p: 'perspective', l: 'letters', ' ': 'play', c: 'command', v: 'movie', s: 'save',
+    x: 'slices', k: 'handles', d: 'drag', z: 'undo', Z: 'redo', '?': 'help', u: 'length', a: 'angle', e: 'ellipse'};
+
+/** @param {KeyboardEvent} event
+ * @param {import('./store.js').Store} store
+ * @param {import('./types').Actions} actions
+ * @param {import('./pointer.js').Pointer} pointer */
+function press(event, store, actions, pointer) {
     const {key} = event;
     if (STEPS[key]) {
-        pointer.step(...STEPS[key].map(way => way * (event.shiftKey ? 1 : 5)));
+        const [across, down] = STEPS[key], degrees = event.shiftKey ? 1 : 5;
+        pointer.step(across * degrees, down * degrees);
     } else if (key === '+' || key === '=' || key === '-') {
-        recipe.set(zoomed(recipe.keys, page.info, key === '-' ? 1 / 1.15 : 1.15, 0, 0, 1));
+        store.set(zoomed(store.keys, known(store.info), key === '-' ? 1 / 1.15 : 1.15, 0, 0, 1));
     } else if (key >= '1' && key <= '6') {
-        actions.view(VIEWS[key - 1]);
+        actions.view(VIEWS[Number(key) - 1]);
     } else {
-        const named = {r: 'fit', m: 'mode', p: 'perspective', l: 'letters', ' ': 'play',
-            c: 'command', v: 'movie', s: 'save', x: 'slices', k: 'handles', d: 'drag', z: 'undo', Z: 'redo', '?': 'help',
-            u: 'length', a: 'angle', e: 'ellipse'}[key];
-        actions[named]?.();
-        return Boolean(named);
+        const name = NAMED[key];
+        if (name && name !== 'view' && name !== 'measure')
+            actions[name]();
+        return Boolean(name);
     }
     return true;
 }

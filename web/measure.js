@@ -7,21 +7,22 @@
 
 import {add, cross, dot, project, unproject} from './camera.js';
 import {button, make, row, section, short, surface} from './controls.js';
+import {known} from './store.js';
 
-/** @typedef {number[]} Place of the world: three numbers */
+/** @typedef {import('./types').Vector} Place */
 /** @typedef {[number, number]} Spot of a canvas */
-/** @typedef {{dims: number[], matrix: number[][], axes: [string, number][], medical: boolean,
- *     hounsfield?: boolean, value_unit?: string, keys?: string[], live?: boolean}} Volume */
-/** @typedef {{kind: string, points: Place[], length?: number, degrees?: number, unit?: string,
- *     area?: number, mean?: number|null, deviation?: number|null, min?: number|null,
- *     max?: number|null, count?: number, value_unit?: string}} Result */
+/** @typedef {import('./types').Info} Volume */
+/** @typedef {import('./types').Result} Result */
+/** @typedef {import('./slices.js').Pane} Pane */
 /** A measure: its words; its points, as far as they are known.
  * @typedef {{words: string, kind: string, points: Place[]|null, result?: Result}} Item */
 /** What is being drawn: in a pane, or in the picture (null).
- * @typedef {{pane: any, points: Place[], from: Spot, at: Spot, dragged: boolean}} Pending */
+ * @typedef {{pane: Pane|null, points: Place[], from: Spot, at: Spot, dragged: boolean}} Pending */
 
 const NEEDS = /** @type {Record<string, number>} */ ({line: 2, angle: 3, ellipse: 2});
 const NAMES = /** @type {Record<string, string>} */ ({line: 'Length', angle: 'Angle', ellipse: 'Ellipse'});
+const TELLS = /** @type {Record<string, string>} */ ({line: 'Drag a line, or click its two ends',
+    angle: 'Click three points; the second is the corner', ellipse: 'Drag an ellipse on a slice (x shows them)'});
 export const MEASURES = [['line', 'length'], ['angle', 'angle'], ['ellipse', 'ellipse']];
 const ON_LINE = 7; // pixels from a line that are on it
 const CLICK = 4; // pixels that a click may move
@@ -131,6 +132,11 @@ function path(kind, points, see) {
     return /** @type {Spot[]} */ (places.map(see).filter(Boolean));
 }
 
+/** To the right and down in a slice: the axis of the grid, its pixels, and a number of each.
+ * @type {(slice: import('./types').SliceInfo, x: number, y: number) =>
+ *   [way: [axis: number, sign: number], length: number, number: number][]} */
+const waysOf = ({right, width, down, height}, x, y) => [[right, width, x], [down, height, y]];
+
 /** How far a spot is from a path.
  * @type {(spots: Spot[], at: Spot) => number} */
 function distance(spots, [x, y]) {
@@ -146,21 +152,22 @@ function distance(spots, [x, y]) {
 // --- on the page ------------------------------------------------------------------
 
 export class Measure {
-    /** `page` has the volume (info) and says lines (say); `pointer` knows the picture's box,
-     * `slices` the panes, both in `views`.
-     * @param {any} recipe
-     * @param {any} page
-     * @param {any} engine
-     * @param {any} pointer
-     * @param {any} slices
-     * @param {HTMLElement} views */
-    constructor(recipe, page, engine, pointer, slices, views) {
-        this.recipe = recipe;
-        this.page = page;
+    /** `pointer` knows the picture's box, `slices` the panes, both in `views`; `leave` puts
+     * the tool away, of which the page has a list.
+     * @param {import('./store.js').Store} store
+     * @param {import('./pointer.js').Pointer} pointer
+     * @param {import('./slices.js').Slices} slices
+     * @param {HTMLElement} views
+     * @param {() => void} leave */
+    constructor(store, pointer, slices, views, leave) {
+        const {engine} = store;
+        this.store = store;
         this.engine = engine;
         this.pointer = pointer;
         this.slices = slices;
         this.views = views;
+        this.leave = leave;
+        slices.drawOver = (pane, g) => this.drawIn(pane, g);
         /** @type {string|null} */
         this.tool = null;
         /** @type {Item[]} */
@@ -171,7 +178,7 @@ export class Measure {
         /** @type {Pending|null} */
         this.pending = null;
         this.n = 0; // of questions
-        /** @type {Map<number, (message: any) => void>} */
+        /** @type {Map<number, (message: import('./types').Probe) => void>} */
         this.waits = new Map();
         this.canvas = make('canvas', {className: 'rulers', 'aria-hidden': 'true'});
         this.told = make('output', {className: 'probe'});
@@ -185,15 +192,15 @@ export class Measure {
         /** @type {number|undefined} */
         this.timer = undefined;
         this.filled = '';
-        engine.on('measures', (/** @type {any} */ message) => this.hear(message));
-        engine.on('probe', (/** @type {any} */ message) => this.answered(message));
+        engine.on('measures', message => this.hear(message));
+        engine.on('probe', message => this.answered(message));
         engine.on('open', () => {
             this.asked = '';
             this.waits.clear();
             this.update();
         });
         engine.on('info', () => this.update());
-        recipe.onChange(() => this.update());
+        store.onChange(() => this.update());
         views.addEventListener('pointerdown', event => this.down(event), true);
         views.addEventListener('pointermove', event => this.move(event), true);
         views.addEventListener('pointerup', event => this.up(event), true);
@@ -201,14 +208,14 @@ export class Measure {
         document.addEventListener('keydown', event => this.key(event), true);
     }
 
-    /** @type {Volume} */
     get info() {
-        return this.page.info;
+        return known(this.store.info);
     }
 
     /** Not in pictures of a simulation, or by an engine that has none. */
     get offered() {
-        return Boolean(this.info?.keys?.includes('measure') && !this.info.live);
+        const {info} = this.store;
+        return Boolean(info?.keys?.includes('measure') && !info.live);
     }
 
     /** Draws such measures, or none.
@@ -218,17 +225,16 @@ export class Measure {
         this.pending = null;
         this.views.classList.toggle('measuring', Boolean(this.tool));
         if (this.tool)
-            this.page.say({line: 'Drag a line, or click its two ends', angle: 'Click three points; the second is the corner',
-                ellipse: 'Drag an ellipse on a slice (x shows them)'}[this.tool]);
+            this.store.say(TELLS[this.tool]);
         this.changed();
     }
 
     // --- what the recipe says -------------------------------------------------
 
     update() {
-        if (!this.info)
+        if (!this.store.info)
             return;
-        const {measure: text = '', crop, time, channel, component, mask} = this.recipe.keys;
+        const {measure: text = '', crop, time, channel, component, mask} = this.store.keys;
         const of = JSON.stringify([text, crop, time, channel, component, mask, this.info.matrix]);
         if (text !== this.text) {
             this.chosen = -1;
@@ -263,16 +269,16 @@ export class Measure {
     /** One step to undo.
      * @param {string[]} words */
     set(words) {
-        this.recipe.begin();
-        this.recipe.set({measure: words.join('; ') || null});
-        this.recipe.end();
+        this.store.begin();
+        this.store.set({measure: words.join('; ') || null});
+        this.store.end();
     }
 
     /** @param {number} n */
     choose(n) {
         this.chosen = n;
         const points = this.items[n]?.points;
-        if (points && this.recipe.keys.slices)
+        if (points && this.store.keys.slices)
             this.slices.goTo(indexOf(this.info, points[0]).map(Math.round));
         this.changed();
     }
@@ -288,7 +294,7 @@ export class Measure {
      * @param {Event} event */
     paneOf({target}) {
         return target === this.pointer.canvas ? null
-            : this.slices.panes.find((/** @type {any} */ pane) => pane.canvas === target);
+            : this.slices.panes.find(pane => pane.canvas === target);
     }
 
     /** @param {PointerEvent} event
@@ -299,28 +305,28 @@ export class Measure {
     }
 
     /** Of a place, in a pane or the picture.
-     * @param {any} pane
+     * @param {Pane|null} pane
      * @param {Place} place
      * @returns {number[]|null} */
     see(pane, place) {
         if (!pane) {
-            const {pointer} = this, seen = project(this.recipe.keys, this.info, place, pointer.side);
+            const {pointer} = this, seen = project(this.store.keys, this.info, place, pointer.side);
             const {clientWidth, clientHeight} = pointer.canvas;
             return seen && [seen[0] + clientWidth / 2 - pointer.shift, seen[1] + clientHeight / 2];
         }
         const {info, place: {x, y, scale}} = pane, index = indexOf(this.info, place);
-        return [[info.right, info.width, x], [info.down, info.height, y]].map(([[k, sign], length, from]) => {
+        return waysOf(info, x, y).map(([[k, sign], length, from]) => {
             const count = this.info.dims[k], at = (index[k] + 0.5) / count;
             return from + (sign > 0 ? at : 1 - at) * length * scale;
         });
     }
 
     /** The place under a spot of a slice.
-     * @param {any} pane
+     * @param {Pane} pane
      * @param {Spot} spot */
     placeIn(pane, [px, py]) {
         const index = [...this.slices.index], {info, place: {x, y, scale}} = pane;
-        for (const [[k, sign], length, at] of [[info.right, info.width, px - x], [info.down, info.height, py - y]]) {
+        for (const [[k, sign], length, at] of waysOf(info, px - x, py - y)) {
             const count = this.info.dims[k], share = Math.max(0, Math.min(1, at / scale / length));
             index[k] = (sign > 0 ? share : 1 - share) * count - 0.5;
         }
@@ -329,14 +335,14 @@ export class Measure {
 
     /** Asks the server; null where it does not say.
      * @param {object} what
-     * @returns {Promise<any>} */
+     * @returns {Promise<import('./types').Probe>} */
     probe(what) {
         const n = ++this.n;
         this.engine.ask('probe', {...what, n});
         return new Promise(done => this.waits.set(n, done));
     }
 
-    /** @param {{n: number}} message */
+    /** @param {import('./types').Probe} message */
     answered(message) {
         const done = this.waits.get(message.n);
         this.waits.delete(message.n);
@@ -348,12 +354,12 @@ export class Measure {
      * @returns {Promise<Place|null>} */
     async surfaceAt([x, y]) {
         const {pointer} = this, {canvas} = pointer, [width, height] = pointer.box;
-        const dx = x - canvas.clientWidth / 2, dy = y - canvas.clientHeight / 2, {keys} = this.recipe;
+        const dx = x - canvas.clientWidth / 2, dy = y - canvas.clientHeight / 2, {keys} = this.store;
         const share = [dx / width + 0.5, dy / height + 0.5];
         if (share.some(s => s < 0 || s > 1))
             return null;
         const {depth} = await this.probe({x: share[0], y: share[1], size: [canvas.width, canvas.height]});
-        return Number.isFinite(depth) ? unproject(keys, this.info, dx + pointer.shift, dy, depth, pointer.side) : null;
+        return typeof depth === 'number' ? unproject(keys, this.info, dx + pointer.shift, dy, depth, pointer.side) : null;
     }
 
     // --- the pointer ------------------------------------------------------------
@@ -374,7 +380,7 @@ export class Measure {
         canvas.focus();
         canvas.setPointerCapture(event.pointerId);
         if (!pane && this.tool === 'ellipse') {
-            this.page.say('An ellipse is drawn on a slice: x shows them.');
+            this.store.say('An ellipse is drawn on a slice: x shows them.');
             return;
         }
         if (!this.pending || this.pending.pane !== pane)
@@ -431,7 +437,7 @@ export class Measure {
             return;
         if (!place) {
             this.pending = null;
-            this.page.say('Nothing opaque is there to measure; modes over and iso have a surface.');
+            this.store.say('Nothing opaque is there to measure; modes over and iso have a surface.');
         } else {
             pending.points[slot] = place;
             if (pending.points.length === NEEDS[tool] && pending.points.every(point => point.length))
@@ -443,13 +449,13 @@ export class Measure {
     /** @param {string} tool
      * @param {Pending} pending */
     finish(tool, {pane, points}) {
-        const {info} = this, words = tool === 'ellipse' ? this.ellipse(pane, points)
+        const {info} = this, words = tool === 'ellipse' && pane ? this.ellipse(pane, points)
             : `${tool} ${points.map(point => wordOf(info, point)).join(' ')}`;
         this.pending = null;
         if (!words || new Set(words.split(' ')).size < words.split(' ').length)
             return; // two of its points are one
         if (this.items.length >= MOST) {
-            this.page.say(`There are ${MOST} measures already: delete some.`);
+            this.store.say(`There are ${MOST} measures already: delete some.`);
             return;
         }
         this.set([...this.items.map(item => item.words), words]);
@@ -457,7 +463,7 @@ export class Measure {
     }
 
     /** In the box of two corners.
-     * @param {any} pane
+     * @param {Pane} pane
      * @param {Place[]} corners */
     ellipse(pane, [from, to]) {
         const {info} = this, k = pane.along, ends = [from, to].map(place => indexOf(info, place));
@@ -475,7 +481,7 @@ export class Measure {
     }
 
     /** Chooses the measure at a spot, or none.
-     * @param {any} pane
+     * @param {Pane|null} pane
      * @param {Spot} spot */
     pick(pane, spot) {
         const far = this.items.map((item, n) => item.points && this.isIn(pane, n)
@@ -508,21 +514,16 @@ export class Measure {
         event.stopPropagation();
     }
 
-    /** The page puts its own in the place: it has a list of tools. */
-    leave() {
-        this.take(null);
-    }
-
     // --- what is under the pointer ------------------------------------------------
 
-    /** @param {any} pane
+    /** @param {Pane|null} pane
      * @param {Spot} spot */
     rest(pane, spot) {
         clearTimeout(this.timer);
         this.timer = setTimeout(() => this.waits.size || this.ask(pane, spot), REST);
     }
 
-    /** @param {any} pane
+    /** @param {Pane|null} pane
      * @param {Spot} spot */
     async ask(pane, spot) {
         const now = this.over = {}, place = pane ? this.placeIn(pane, spot) : await this.surfaceAt(spot);
@@ -536,10 +537,10 @@ export class Measure {
         const {value} = await this.probe({at});
         const {hounsfield, value_unit: own} = this.info, unit = hounsfield ? 'HU' : own ?? '';
         if (this.over === now)
-            this.tell(pane, placeText(this.info, place) + ':  ' + (Number.isFinite(value) ? short(value) + after(unit) : 'no value'));
+            this.tell(pane, placeText(this.info, place) + ':  ' + (typeof value === 'number' ? short(value) + after(unit) : 'no value'));
     }
 
-    /** @param {any} pane
+    /** @param {Pane|null} pane
      * @param {string} [text] */
     tell(pane, text = '') {
         if (!text) {
@@ -549,13 +550,13 @@ export class Measure {
         this.told.textContent = text;
         const parent = pane?.element ?? this.pointer.canvas.parentElement;
         if (text && this.told.parentElement !== parent)
-            parent.append(this.told);
+            parent?.append(this.told);
     }
 
     // --- drawing ------------------------------------------------------------------
 
     /** Whether a measure lies in the slice of a pane; all are in the picture.
-     * @param {any} pane
+     * @param {Pane|null} pane
      * @param {number} n */
     isIn(pane, n) {
         const {kind, points, words} = this.items[n];
@@ -566,7 +567,7 @@ export class Measure {
             far.every(x => x < 1e-3));
     }
 
-    /** @param {any} pane */
+    /** @param {Pane|null} pane */
     redraw(pane) {
         if (pane)
             pane.draw();
@@ -578,7 +579,7 @@ export class Measure {
     draw() {
         const shown = this.chosen >= 0 || (this.pending && !this.pending.pane);
         this.canvas.hidden = !shown;
-        const {g} = shown && this.info ? surface(this.canvas) : {g: null};
+        const g = shown && this.store.info ? surface(this.canvas)?.g : null;
         if (!g)
             return;
         const item = this.items[this.chosen];
@@ -588,7 +589,7 @@ export class Measure {
     }
 
     /** Over a slice.
-     * @param {any} pane
+     * @param {Pane|null} pane
      * @param {CanvasRenderingContext2D} g */
     drawIn(pane, g) {
         this.items.forEach((item, n) => {
@@ -602,7 +603,7 @@ export class Measure {
     }
 
     /** @param {CanvasRenderingContext2D} g
-     * @param {any} pane */
+     * @param {Pane|null} pane */
     drawPending(g, pane) {
         const {pending, tool} = this;
         if (!pending || pending.pane !== pane || !tool)

@@ -6,28 +6,45 @@ import {grips} from './clip.js';
 import {listen, make, surface} from './controls.js';
 import {STEPS} from './keys.js';
 import {COLORS, world} from './slices.js';
+import {known} from './store.js';
+
+/** @typedef {import('./types').Vector} Vector */
 
 const HANDLES = 12; // six ends and six tilted planes
 const NAMES = ['x', 'y', 'z'], PATIENT = ['left - right', 'back - front', 'bottom - top'];
 
+/** @param {import('./types').Info} info */
 export const axisNames = info => info.medical ? PATIENT : NAMES;
 
 export class Overlay {
-    /** `pointer` knows the box of the picture. */
-    constructor(recipe, page, pointer, slices) {
-        Object.assign(this, {recipe, page, pointer, slices});
+    /** `pointer` knows the box of the picture.
+     * @param {import('./store.js').Store} store
+     * @param {import('./pointer.js').Pointer} pointer
+     * @param {import('./slices.js').Slices} slices */
+    constructor(store, pointer, slices) {
+        this.store = store;
+        this.pointer = pointer;
+        this.slices = slices;
+        this.size = '';
+        /** @type {import('./clip.js').Grip[]} */
+        this.grips = [];
+        /** What is dragged: from where, and how many pixels a step of it are.
+         * @type {{grip: import('./clip.js').Grip, id: number, x: number, y: number, way: Vector,
+         *   length: number}|null} */
+        this.held = null;
         this.canvas = make('canvas', {className: 'over', 'aria-hidden': 'true'});
         this.handles = Array.from({length: HANDLES}, (_, i) => this.handle(i));
-        recipe.onChange(() => this.draw());
+        store.onChange(() => this.draw());
     }
 
     get elements() {
         return [this.canvas, ...this.handles];
     }
 
-    /** From the place of the target, in pixels of the screen. */
+    /** From the place of the target, in pixels of the screen.
+     * @param {Vector} place */
     see(place) {
-        return project(this.recipe.keys, this.page.info, place, this.pointer.side);
+        return project(this.store.keys, known(this.store.info), place, this.pointer.side);
     }
 
     /** A picture may have another size than the one before. */
@@ -40,21 +57,23 @@ export class Overlay {
     draw() {
         const {width: across, height: down, clientWidth: width, clientHeight: height} = this.pointer.canvas;
         this.size = `${across} ${down}`;
-        const {canvas, page} = this;
-        if (!page.info || !width)
+        const {canvas, store: {info}} = this;
+        if (!info || !width)
             return;
-        canvas.hidden = !(this.slices.keys && page.info.slices); // empty, it costs as much
-        if (!canvas.hidden) {
-            const {g} = surface(canvas);
+        canvas.hidden = !(this.slices.keys && info.slices); // empty, it costs as much
+        const g = canvas.hidden ? null : surface(canvas)?.g;
+        if (g) {
             g.translate(width / 2 - this.pointer.shift, height / 2);
             [0, 1, 2].forEach(k => this.outline(g, k));
         }
         this.place(width, height);
     }
 
-    /** The edge of a slice across axis k of the grid. */
+    /** The edge of a slice across axis k of the grid.
+     * @param {CanvasRenderingContext2D} g
+     * @param {number} k */
     outline(g, k) {
-        const {info} = this.page, index = this.slices.index, [u, v] = [0, 1, 2].filter(i => i !== k);
+        const info = known(this.store.info), index = this.slices.index, [u, v] = [0, 1, 2].filter(i => i !== k);
         g.strokeStyle = COLORS[k];
         g.lineWidth = 1.5;
         g.beginPath();
@@ -72,6 +91,7 @@ export class Overlay {
 
     // --- handles ---------------------------------------------------------------
 
+    /** @param {number} i */
     handle(i) {
         const {pointer} = this, button = make('button', {type: 'button', className: 'handle',
             hidden: true, role: 'slider', 'aria-label': 'clip plane'});
@@ -79,15 +99,17 @@ export class Overlay {
             up: event => this.up(event), wheel: event => pointer.wheel(event), key: ({key}) => {
                 const by = STEPS[key], {move, value, low, high} = this.grips[i];
                 if (by)
-                    this.recipe.set(move(this.recipe.keys, value + (by[0] - by[1]) * (high - low) / 100));
+                    this.store.set(move(this.store.keys, value + (by[0] - by[1]) * (high - low) / 100));
                 return by;
             }});
         return button;
     }
 
+    /** @param {number} width
+     * @param {number} height */
     place(width, height) {
-        const {info, clipping} = this.page;
-        this.grips = clipping ? grips(this.recipe.keys, info, axisNames(info)) : [];
+        const {clipping, keys} = this.store, info = known(this.store.info);
+        this.grips = clipping ? grips(keys, info, axisNames(info)) : [];
         this.handles.forEach((button, i) => {
             const grip = this.grips[i], seen = grip && !grip.fixed && this.see(grip.place);
             button.hidden = !seen;
@@ -99,42 +121,46 @@ export class Overlay {
             button.style.background = COLORS[grip.axis];
             button.title = grip.name;
             button.setAttribute('aria-label', grip.name);
-            button.setAttribute('aria-valuemin', grip.low);
-            button.setAttribute('aria-valuemax', grip.high);
-            button.setAttribute('aria-valuenow', grip.value);
+            button.setAttribute('aria-valuemin', `${grip.low}`);
+            button.setAttribute('aria-valuemax', `${grip.high}`);
+            button.setAttribute('aria-valuenow', `${grip.value}`);
         });
     }
 
+    /** @param {PointerEvent} event
+     * @param {number} i */
     down(event, i) {
         if (event.button || this.held)
             return true;
-        const {keys} = this.recipe, {info} = this.page, grip = this.grips[i];
-        const unit = info.radius / 100, from = this.see(grip.place);
+        const {keys} = this.store, info = known(this.store.info), grip = this.grips[i], handle = this.handles[i];
+        const unit = info.radius / 100, from = known(this.see(grip.place));
         const to = this.see(grip.place.map((x, k) => x + unit * grip.way[k])) ?? from;
-        event.target.focus();
-        event.target.setPointerCapture(event.pointerId);
+        handle.focus();
+        handle.setPointerCapture(event.pointerId);
         this.held = {grip, id: event.pointerId, x: event.clientX, y: event.clientY,
             way: [(to[0] - from[0]) / unit, (to[1] - from[1]) / unit],
             length: pixel(keys, info, this.pointer.side)};
-        this.recipe.begin();
+        this.store.begin();
         return true;
     }
 
     /** The plane stays under the pointer; one that is seen edge-on follows up and
-     * down. */
+     * down.
+     * @param {PointerEvent} event */
     move(event) {
-        if (this.held?.id !== event.pointerId)
+        if (!this.held || this.held.id !== event.pointerId)
             return;
         const {grip, x, y, way, length} = this.held;
         const dx = event.clientX - x, dy = event.clientY - y, square = way[0] ** 2 + way[1] ** 2;
         const by = square * length ** 2 > 0.02 ? (dx * way[0] + dy * way[1]) / square : -dy * length;
-        this.recipe.set(grip.move(this.recipe.keys, grip.value + by));
+        this.store.set(grip.move(this.store.keys, grip.value + by));
     }
 
+    /** @param {PointerEvent} event */
     up(event) {
-        if (this.held?.id !== event.pointerId)
+        if (!this.held || this.held.id !== event.pointerId)
             return;
         this.held = null;
-        this.recipe.end();
+        this.store.end();
     }
 }

@@ -1,13 +1,23 @@
 // panel.js - the controls beside the picture.
 
 import {facing, grips, isFull, PLANES_MOST, tilted, tiltedTo} from './clip.js';
-import {Channels, mixed} from './channels.js';
+import {Channels} from './channels.js';
 import {Colors, ownColors, painted, ranged, text} from './colors.js';
 import {button, check, ink, line, make, number, row, section, select, short, show, slider}
     from './controls.js';
 import {BY_GRADIENT, Editor} from './editor.js';
 import {MODES, VIEWS} from './keys.js';
+import {mixed, overlayKeys} from './look.js';
 import {axisNames} from './overlay.js';
+import {known} from './store.js';
+
+/** @typedef {import('./types').Keys} Keys */
+/** @typedef {import('./types').Label} Label */
+/** @typedef {import('./types').Point} Point */
+
+/** Keys of the look of labels, of the volume or the overlay: as they are, and changes of them.
+ * @typedef {{get: (keys: Keys) => {opacity?: Point[], colormap?: string},
+ *   set: (changes: {preset?: string, colormap?: string, range?: number[], opacity?: Point[]}) => void}} Own */
 
 const WORLD_VIEWS = ['+x', '-x', '+y', '-y', '+z', '-z'];
 const AXES = ['x', 'y', 'z'];
@@ -15,130 +25,162 @@ const FIRST_PANE = 4;
 const NO_SHAPE = {colormap: null, opacity: null, 'gradient-opacity': null, range: null,
     scale: null};
 
-/** The look of the overlay, "labels,1:#00ff00,0:0,5:0.8", as the keys of the volume's. */
-const split = ({'overlay-look': text = ''}) => {
-    const of = test => text.split(',').filter(part => test.test(part)), name = /#|^[a-eg-z]\D/;
-    return {colormap: of(name).join(), opacity: of(/:[^#]/).map(part => part.split(':').map(Number)),
-        range: of(/^[^:]+$/).filter(part => !name.test(part))};
-};
-
+/** @param {number[]} list
+ * @param {number} i
+ * @param {number} value */
 const swap = (list, i, value) => list.map((old, k) => k === i ? value : old);
+/** @param {Keys} keys */
 const material = keys => keys.material ?? [0.2, 0.7, 0.2, 20];
 
+/** The light's, to the right and up, where it has one.
+ * @param {Keys} keys */
+const direction = ({light}) => Array.isArray(light) ? light : [0, 0];
+
+/** @param {{low: number, high: number}} look */
+const middle = ({low, high}) => (low + high) / 2;
+
 export class Panel {
-    constructor(recipe, page, engine, actions, slices) {
-        Object.assign(this, {recipe, page, engine, actions, slices});
-        this.editor = new Editor(recipe, page);
-        this.gradient = new Editor(recipe, page, BY_GRADIENT);
-        this.colors = new Colors(recipe, page);
-        this.channels = new Channels(recipe, page, {...NO_SHAPE, preset: null, component: null});
+    /** @param {import('./store.js').Store} store
+     * @param {import('./types').Actions} actions
+     * @param {import('./slices.js').Slices} slices
+     * @param {import('./measure.js').Measure} measure */
+    constructor(store, actions, slices, measure) {
+        const {engine} = store;
+        this.store = store;
+        this.engine = engine;
+        this.actions = actions;
+        this.slices = slices;
+        this.measure = measure;
+        /** @type {HTMLImageElement[]} */
+        this.images = []; // of presets
+        /** @type {HTMLDetailsElement|null} */
+        this.clips = null;
+        this.whole = [0, 0, 0]; // voxels without a crop
+        this.editor = new Editor(store);
+        this.gradient = new Editor(store, BY_GRADIENT);
+        this.colors = new Colors(store);
+        this.channels = new Channels(store, {...NO_SHAPE, preset: null, component: null});
         this.element = make('aside', {className: 'panel', 'aria-label': 'Controls'});
+        /** @type {((keys: Readonly<Keys>) => void)[]} */
         this.updates = [];
         engine.on('small', frame => this.showThumbnail(frame));
     }
 
+    get info() {
+        return known(this.store.info);
+    }
+
     /** When the volume is known. */
     build() {
-        const {live} = this.page.info; // a simulation knows its own data
+        const {live, dims} = this.info; // a simulation knows its own data
+        this.whole = dims;
         this.updates = [];
         this.element.replaceChildren(this.channels.element, this.presets(), this.look(),
             this.colors.element,
-            section('Opacity by gradient', false, this.gradient.element), this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), this.page.measure.section(this.actions.measure), this.clipping(), this.shading(),
+            section('Opacity by gradient', false, this.gradient.element), this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), this.measure.section(this.actions.measure), this.clipping(), this.shading(),
             this.time(), this.labels());
         this.update();
     }
 
     update() {
-        if (this.page.info)
+        if (this.store.info)
             for (const each of this.updates)
-                each(this.recipe.keys);
+                each(this.store.keys);
         this.editor.follow();
         this.gradient.follow();
         this.channels.update();
         this.colors.update();
     }
 
-    /** Keeps a control as the recipe is. */
+    /** Keeps a control as the recipe is.
+     * @param {(keys: Readonly<Keys>) => void} each */
     follow(each) {
         this.updates.push(each);
     }
 
-    /** A box that is ticked as the recipe says. */
+    /** A box that is ticked as the recipe says.
+     * @param {string} name
+     * @param {(keys: Readonly<Keys>) => unknown} of
+     * @param {(on: boolean) => void} change */
     box(name, of, change) {
         const {box, label} = check(name, change);
         this.follow(keys => {
-            box.checked = of(keys);
+            box.checked = Boolean(of(keys));
         });
         return label;
     }
 
-    /** A field or a list that has a value of the recipe. */
+    /** A field or a list that has a value of the recipe.
+     * @template {HTMLInputElement|HTMLSelectElement} T
+     * @param {T} field
+     * @param {(keys: Readonly<Keys>) => string|number} of */
     kept(field, of) {
         this.follow(keys => show(field, of(keys)));
         return field;
     }
 
     look() {
-        const {recipe, page} = this;
-        const modes = this.kept(select(MODES, mode => recipe.set(mode === 'iso'
-            ? {mode, iso: recipe.keys.iso ?? +short((page.look.low + page.look.high) / 2)}
+        const {store, info} = this;
+        const modes = this.kept(select(MODES, mode => store.set(mode === 'iso'
+            ? {mode, iso: store.keys.iso ?? +short(middle(known(store.look)))}
             : {mode, iso: null})), ({mode = 'over'}) => mode);
-        const isoRow = row('Iso value', this.kept(number('iso value', value => recipe.set({iso: value})),
+        const isoRow = row('Iso value', this.kept(number('iso value', value => store.set({iso: value})),
             ({iso = ''}) => iso));
-        const maps = this.kept(select([['', 'of the preset'], ...page.info.colormaps, [':', 'own']],
-            name => recipe.set({colormap: name === ':' ? text(this.colors.points) : name || null,
-                ...name && page.look.labels?.length && {preset: null}})), // these are of values
+        const maps = this.kept(select([['', 'of the preset'], ...info.colormaps, [':', 'own']],
+            name => store.set({colormap: name === ':' ? text(this.colors.points) : name || null,
+                ...name && store.look?.labels?.length ? {preset: null} : {}})), // these are of values
         ({colormap = ''}) => ownColors(colormap) ? ':' : colormap);
-        const ends = ['low', 'high'].map((end, i) => this.kept(number(`${end}est value of the range`,
-            value => this.setRange(...i ? [null, value] : [value, null])),
-        () => page.look ? short(page.look[end]) : ''));
+        const ends = /** @type {const} */ (['low', 'high']).map(end => this.kept(number(`${end}est value of the range`,
+            value => this.setRange({[end]: value})), () => store.look ? short(store.look[end]) : ''));
         const percent = button('1-99 %', 'Range of the 1st to the 99th percentile',
-            () => recipe.set({range: ['p1', 'p99']}));
+            () => store.set({range: ['p1', 'p99']}));
         const alone = make('div', {}, this.editor.element, row('Range', ...ends, percent),
             row('Colours', maps));
         this.follow(keys => {
-            alone.hidden = mixed(page.look);
+            alone.hidden = mixed(store.look);
             isoRow.hidden = keys.mode !== 'iso';
         });
         return section('Look', true, alone, row('Mode', modes), isoRow,
-            this.box('logarithmic values', ({scale}) => scale === 'log', on => recipe.set({scale: on ? 'log' : null})),
+            this.box('logarithmic values', ({scale}) => scale === 'log', on => store.set({scale: on ? 'log' : null})),
             this.box('on both sides of 0', ({scale}) => scale?.startsWith('sym'),
-                on => recipe.set({scale: on ? 'symlog' : null})));
+                on => store.set({scale: on ? 'symlog' : null})));
     }
 
-    setRange(low, high) {
-        const {look} = this.page, range = [low ?? look.low, high ?? look.high];
-        if (range[0] < range[1])
-            this.recipe.set(ranged(look, this.recipe.keys, range));
+    /** @param {{low?: number, high?: number}} end */
+    setRange(end) {
+        const look = known(this.store.look), {low, high} = {...look, ...end};
+        if (low < high)
+            this.store.set(ranged(look, this.store.keys, [low, high]));
     }
 
     /** Pictures of the volume itself, made when the list is opened. */
     presets() {
-        const {page} = this, none = page.info.tf ? 'of the file' : 'automatic';
-        const names = [['', page.info.tf ? 'of the file of --tf' : 'made from the histogram'], 
-            ...page.info.presets];
+        const {store, info} = this, none = info.tf ? 'of the file' : 'automatic';
+        const names = [['', info.tf ? 'of the file of --tf' : 'made from the histogram'],
+            ...info.presets];
         const grid = make('div', {className: 'presets'});
         this.images = names.map(([name, text]) => {
             const image = make('img', {alt: '', hidden: true});
             const choose = make('button', {type: 'button', title: text,
                 'aria-label': `Preset ${name || none}: ${text}`,
-                onclick: () => this.recipe.set({...NO_SHAPE, preset: name || null,
-                    ...mixed(page.look) && {channel: `${page.look.channels[0][0]}`}})},
+                onclick: () => {
+                    const [[first]] = mixed(store.look) && store.look?.channels || [[null]];
+                    store.set({...NO_SHAPE, preset: name || null, ...first !== null && {channel: `${first}`}});
+                }},
             image, name || none);
-            this.follow(keys => choose.setAttribute('aria-pressed',
-                (keys.preset ?? '') === name));
+            this.follow(keys => choose.setAttribute('aria-pressed', `${(keys.preset ?? '') === name}`));
             grid.append(choose);
             return image;
         });
         const list = section('Presets', false, grid);
-        const ask = () => list.open && names.forEach(([preset], i) => this.engine.ask('thumbnail',
-            {preset, pane: FIRST_PANE + i}));
-        list.addEventListener('toggle', ask);
+        list.addEventListener('toggle', () => list.open && names.forEach(([preset], i) =>
+            this.engine.ask('thumbnail', {preset, pane: FIRST_PANE + i})));
         return list;
     }
 
+    /** @param {import('./types').Frame} frame */
     showThumbnail(frame) {
-        const image = this.images?.[frame.pane - FIRST_PANE];
+        const image = this.images[frame.pane - FIRST_PANE];
         if (!image)
             return;
         URL.revokeObjectURL(image.src);
@@ -146,27 +188,31 @@ export class Panel {
         image.hidden = false;
     }
 
-    /** A slider of a number, or of one of the material. */
-    strength(name, key, high, step, i) {
-        const told = make('output'), {recipe} = this;
-        const input = slider(name, 0, high, step, recipe, value => recipe.set({[key]:
-            key === 'material' ? swap(material(recipe.keys), i, value) : value}));
+    /** A slider of a number, or of one of the material.
+     * @param {string} name
+     * @param {'material'|'depth-darkening'|'occlusion'|'threshold'} key
+     * @param {number} high
+     * @param {number} step */
+    strength(name, key, high, step, i = 0) {
+        const told = make('output'), {store} = this;
+        const input = slider(name, 0, high, step, store, value => store.set({[key]:
+            key === 'material' ? swap(material(store.keys), i, value) : value}));
         this.follow(keys => {
-            input.value = key === 'material' ? material(keys)[i] : keys[key] ?? 0;
+            input.value = `${key === 'material' ? material(keys)[i] : keys[key] ?? 0}`;
             told.textContent = input.value;
         });
         return row(name, input, told);
     }
 
     shading() {
-        const {recipe} = this;
+        const {store} = this;
         const shade = this.box('shaded', keys => keys.shade ? keys.shade === 'phong'
-            : this.page.look?.shaded ?? true, on => recipe.set({shade: on ? 'phong' : 'none'}));
+            : store.look?.shaded ?? true, on => store.set({shade: on ? 'phong' : 'none'}));
         const light = select([['key', 'from the upper left'], ['head', 'from the viewer'],
             ['direction', 'from a direction']],
-        value => recipe.set({light: value === 'direction' ? [-25, 35] : value}));
+        value => store.set({light: value === 'direction' ? [-25, 35] : value}));
         const way = ['right', 'up'].map((name, i) => slider(`degrees of the light ${name}`, -90, 90, 1,
-            recipe, value => recipe.set({light: swap(recipe.keys.light, i, value)})));
+            store, value => store.set({light: swap(direction(store.keys), i, value)})));
         const ways = row('Right, up', ...way);
         const sparse = make('output', {className: 'faint'});
         this.engine.on('figures', figures => {
@@ -176,9 +222,9 @@ export class Panel {
         });
         this.follow(keys => {
             ways.hidden = !Array.isArray(keys.light);
-            show(light, ways.hidden ? keys.light ?? 'key' : 'direction');
+            show(light, Array.isArray(keys.light) ? 'direction' : keys.light ?? 'key');
             way.forEach((input, i) => {
-                input.value = ways.hidden ? 0 : keys.light[i];
+                input.value = `${direction(keys)[i]}`;
             });
         });
         return section('Light and detail', false, shade, row('Light', light), ways,
@@ -191,75 +237,78 @@ export class Panel {
     }
 
     camera() {
-        const {recipe, actions, page} = this;
-        const names = page.info.medical ? VIEWS : WORLD_VIEWS;
+        const {store, actions, info} = this;
+        const names = info.medical ? VIEWS : WORLD_VIEWS;
         const views = make('div', {className: 'row'}, ...[...names, 'iso'].map(name =>
-            button(page.info.medical ? name[0].toUpperCase() + name.slice(1) : name,
+            button(info.medical ? name[0].toUpperCase() + name.slice(1) : name,
                 `View from ${name}`, () => actions.view(name))));
-        const angles = ['azimuth', 'elevation', 'roll'].map(key => this.kept(
-            number(`${key} in degrees`, value => recipe.set({[key]: value})),
+        const angles = /** @type {const} */ (['azimuth', 'elevation', 'roll']).map(key => this.kept(
+            number(`${key} in degrees`, value => store.set({[key]: value})),
             keys => short(keys[key] ?? 0)));
-        const zoom = this.kept(number('zoom', value => value > 0 && recipe.set({zoom: value})),
+        const zoom = this.kept(number('zoom', value => value > 0 && store.set({zoom: value})),
             keys => short(keys.zoom ?? 1));
-        const height = this.kept(number('height, a factor', value => value > 0 && recipe.set({'z-scale': value})),
+        const height = this.kept(number('height, a factor', value => value > 0 && store.set({'z-scale': value})),
             keys => keys['z-scale'] ?? '');
         return section('Camera', true, views, row('Angles', ...angles),
             row('Zoom', zoom, button('Frame all', 'Frame what the look shows', actions.fit)),
-            page.info.medical ? '' : row('Height', height),
-            this.box('perspective', keys => keys.perspective > 0, actions.perspective));
+            info.medical ? '' : row('Height', height),
+            this.box('perspective', keys => (keys.perspective ?? 0) > 0, actions.perspective));
     }
 
     /** Two planes across each axis of the world, tilted ones, and the box that is
      * read.  While it is open handles are on the picture. */
     clipping() {
-        const {page, recipe} = this;
+        const {store, info} = this;
+        /** @param {number} i */
         const end = i => {
             const {name, low, high} = this.grip(i);
-            const input = slider(name, low, high, (high - low) / 200, recipe,
-                value => recipe.set(this.grip(i).move(recipe.keys, value)));
+            const input = slider(name, low, high, (high - low) / 200, store,
+                value => store.set(this.grip(i).move(store.keys, value)));
             this.follow(() => {
                 const {value, fixed} = this.grip(i);
-                input.value = value;
-                input.disabled = fixed;
+                input.value = `${value}`;
+                input.disabled = Boolean(fixed);
             });
             return input;
         };
-        const rows = axisNames(page.info).map((name, i) => row(name, end(2 * i), end(2 * i + 1)));
+        const rows = axisNames(info).map((name, i) => row(name, end(2 * i), end(2 * i + 1)));
         const cut = button('Cut here', 'A plane that faces the viewer, through the point that is ' +
-            'turned around', () => recipe.set(facing(recipe.keys, page.info)));
+            'turned around', () => store.set(facing(store.keys, this.info)));
         this.follow(keys => {
             cut.disabled = isFull(keys);
         });
-        this.clips = section('Clip', false, ...rows, ...this.tilted(), make('div', {className: 'row'}, cut,
-            button('Remove all', 'Remove all clip planes', () => recipe.set({clip: null}))),
-        ...this.masking(), ...page.info.live ? [] : this.cropping());
-        this.clips.addEventListener('toggle', () => {
-            page.clipping = this.clips.open;
-            recipe.changed();
+        const clips = section('Clip', false, ...rows, ...this.tilted(), make('div', {className: 'row'}, cut,
+            button('Remove all', 'Remove all clip planes', () => store.set({clip: null}))),
+        ...this.masking(), ...info.live ? [] : this.cropping());
+        clips.addEventListener('toggle', () => {
+            store.clipping = clips.open;
+            store.changed();
         });
-        return this.clips;
+        this.clips = clips;
+        return clips;
     }
 
-    /** An end or, from 6 on, a tilted plane. */
+    /** An end or, from 6 on, a tilted plane.
+     * @param {number} i */
     grip(i) {
-        return grips(this.recipe.keys, this.page.info, axisNames(this.page.info))[i];
+        return grips(this.store.keys, this.info, axisNames(this.info))[i];
     }
 
     tilted() {
-        const {recipe} = this;
+        const {store} = this;
         return Array.from({length: PLANES_MOST}, (_, i) => {
-            const input = slider(`tilted clip plane ${i + 1}`, -1, 1, 0.01, recipe, value => {
+            const input = slider(`tilted clip plane ${i + 1}`, -1, 1, 0.01, store, value => {
                 const {low, high, move} = this.grip(6 + i);
-                recipe.set(move(recipe.keys, low + (value + 1) / 2 * (high - low)));
+                store.set(move(store.keys, low + (value + 1) / 2 * (high - low)));
             });
             const line = row(`Tilted ${i + 1}`, input, button('Remove', `Remove tilted plane ${i + 1}`,
-                () => recipe.set(tiltedTo(recipe.keys, i, null))));
+                () => store.set(tiltedTo(store.keys, i, null))));
             this.follow(keys => {
                 line.hidden = i >= tilted(keys).length;
                 if (line.hidden)
                     return;
                 const {value, low, high} = this.grip(6 + i);
-                input.value = 2 * (value - low) / (high - low) - 1;
+                input.value = `${2 * (value - low) / (high - low) - 1}`;
             });
             return line;
         });
@@ -267,15 +316,15 @@ export class Panel {
 
     /** Labels are those of the mask; a page that begins without it has them too. */
     masking() {
-        const {page, recipe} = this;
-        if (!page.info.mask)
+        const {store, info} = this;
+        if (!info.mask)
             return [];
-        return [this.box('only what the mask keeps', ({mask}) => mask, on => recipe.set({mask: on || null,
-            labels: on ? page.info.labels : null}))];
+        return [this.box('only what the mask keeps', ({mask}) => mask, on => store.set({mask: on || null,
+            labels: on ? info.labels : null}))];
     }
 
     cropping() {
-        const {recipe} = this, full = this.page.whole ?? this.page.info.dims;
+        const full = this.whole;
         return [make('p', {className: 'faint', textContent: 'Crop: first voxel, and one past the last'}),
             ...AXES.map((name, axis) => {
                 const fields = [0, 1].map(end => this.kept(number(
@@ -286,58 +335,69 @@ export class Panel {
             })];
     }
 
+    /** @param {number[]} full
+     * @param {number} axis
+     * @param {number} end
+     * @param {number} value */
     setCrop(full, axis, end, value) {
-        const crop = full.map((size, i) => [this.recipe.keys.crop?.[i][0] ?? 0,
-            this.recipe.keys.crop?.[i][1] || size]);
+        const {store} = this;
+        /** @type {import('./types').Pair[]} */
+        const crop = full.map((size, i) => [store.keys.crop?.[i][0] ?? 0, store.keys.crop?.[i][1] || size]);
         crop[axis][end] = Math.max(0, Math.min(full[axis], value));
         if (crop[axis][0] >= crop[axis][1])
             return;
         const whole = crop.every(([a, b], i) => a === 0 && b === full[i]);
-        this.recipe.set({crop: whole ? null : crop});
+        store.set({crop: whole ? null : crop});
     }
 
     /** A second volume of the command line: switched; labels by name, or values in
      * colours of a range. */
     overlay() {
-        const {recipe, page} = this;
-        if (!page.info.overlay)
+        const {store, info} = this;
+        if (!info.overlay)
             return '';
-        const on = this.box(page.info.overlay, keys => keys.overlay, value => recipe.set({overlay: value || null}));
-        const over = {get: split, set: changes => {
-            const {preset = [], colormap, range, opacity} = {...split(recipe.keys), ...changes};
-            recipe.set({'overlay-look': [preset, colormap, range, opacity.map(point => point.join(':'))].filter(
-                String).join() || null});
+        const on = this.box(info.overlay, keys => keys.overlay, value => store.set({overlay: value || null}));
+        /** @type {Own} */
+        const over = {get: overlayKeys, set: changes => {
+            const {colormap, range, opacity} = {...overlayKeys(store.keys), ...changes};
+            store.set({'overlay-look': [changes.preset, colormap, range, opacity?.map(point => point.join(':'))].filter(
+                part => part && String(part)).join() || null});
         }};
-        const labels = () => this.labelled(over, page.look?.overlay?.labels);
+        const labels = () => this.labelled(over, store.look?.overlay?.labels);
         // Half, as in slices where nothing is asked.
         const list = this.switches(over, labels, 0.5);
-        const maps = this.kept(select(page.info.colormaps,
-            colormap => over.set({colormap})), keys => split(keys).colormap || 'hot');
-        // From nothing at the low end of a range on.  The next change may come before the
-        // server's look.
-        const spread = (to, opacity = this.most(over)) => {
-            const {low, high} = Object.assign(page.look.overlay, to);
+        const maps = this.kept(select(info.colormaps,
+            colormap => over.set({colormap})), keys => overlayKeys(keys).colormap || 'hot');
+        // From nothing at the low end of a range on.  An end beyond the other one waits in
+        // its field for that.
+        const spread = (opacity = this.most(over)) => {
+            const {low: first, high: last} = known(store.look?.overlay);
+            const [low, high] = [first, last].map((value, i) =>
+                ends[i].value === short(value) ? value : ends[i].valueAsNumber);
             if (low < high)
                 over.set({range: [low, high], opacity: opacity ? [[low, 0], [high, opacity]] : []});
         };
-        const ends = ['lowest', 'highest'].map((name, i) => number(`${name} value of the range of the overlay`,
-            value => spread({[i ? 'high' : 'low']: value})));
-        const opacity = slider('opacity of the overlay', 0.02, 1, 0.02, recipe, value => labels().length
-            ? over.set({opacity: labels().map(([label, , , now]) => [label, now ? value : 0])}) : spread({}, value));
+        const ends = ['lowest', 'highest'].map(name => number(`${name} value of the range of the overlay`,
+            () => spread()));
+        const opacity = slider('opacity of the overlay', 0.02, 1, 0.02, store, value => labels().length
+            ? over.set({opacity: labels().map(([label, , , now]) => [label, now ? value : 0])}) : spread(value));
         const values = make('div', {}, row('Colours', maps), row('Range', ...ends), button('Automatic', 'Opacity of the preset', () => over.set({range: [], opacity: []})));
         this.follow(keys => {
-            const overlay = page.look?.overlay;
+            const overlay = store.look?.overlay;
             values.hidden = !overlay || labels().length > 0;
             ends.forEach((field, i) => show(field, overlay ? short(i ? overlay.high : overlay.low) : ''));
-            opacity.value = this.most(over) || 0.5;
+            opacity.value = `${this.most(over) || 0.5}`;
         });
         return section('Overlay', true, on, list, row('Opacity', opacity), values);
     }
 
     /** Labels of the volume itself. */
     named() {
-        const {recipe} = this, own = {get: keys => keys, set: keys => recipe.set(keys)};
-        const list = this.switches(own, () => this.labelled(own, this.page.look?.labels));
+        const {store} = this;
+        /** @type {Own} */
+        const own = {get: keys => keys, set: ({preset, colormap, opacity}) => store.set({...preset && {preset},
+            ...colormap && {colormap}, ...opacity && {opacity}})};
+        const list = this.switches(own, () => this.labelled(own, store.look?.labels));
         const made = section('Labels', true, list);
         this.follow(() => {
             made.hidden = !list.childElementCount;
@@ -345,40 +405,50 @@ export class Panel {
         return made;
     }
 
-    /** The largest opacity of a look. */
+    /** The largest opacity of a look.
+     * @param {Own} of */
     most(of) {
-        return Math.max(0, ...(of.get(this.recipe.keys).opacity ?? []).map(point => point[1]));
+        return Math.max(0, ...(of.get(this.store.keys).opacity ?? []).map(point => point[1]));
     }
 
     /** Labels with the colours and opacities of the recipe, which may be newer than the
-     * look. */
+     * look.
+     * @param {Own} of
+     * @param {Label[]} labels
+     * @returns {Label[]} */
     labelled(of, labels = []) {
-        const {opacity: given, colormap} = of.get(this.recipe.keys), points = new Map(given);
-        const colors = new Map(ownColors(colormap));
+        const {opacity: given, colormap} = of.get(this.store.keys), points = new Map(given ?? []);
+        const colors = new Map(ownColors(colormap) ?? []);
         return labels.map(([value, name, color, opacity]) =>
             [value, name, colors.get(value) ?? color, points.get(value) ?? opacity]);
     }
 
-    /** A box for each label, that sets its opacity to 0 and back, and its colour. */
+    /** A box for each label, that sets its opacity to 0 and back, and its colour.
+     * @param {Own} of
+     * @param {() => Label[]} labels */
     switches(of, labels, usual = 1) {
         const list = make('div', {});
+        /** @param {number} i
+         * @param {boolean} on */
         const put = (i, on) => {
             const full = this.most(of) || usual;
             of.set({opacity: labels().map(([value, , , opacity], k) =>
                 [value, (k === i ? on : opacity) ? full : 0])});
         };
-        let names, boxes;
+        let names = '';
+        /** @type {{box: HTMLInputElement, label: HTMLElement, color: HTMLInputElement}[]} */
+        let boxes = [];
         this.follow(() => {
-            const now = labels(), called = now.map(([value, name]) => name || value);
+            const now = labels(), called = now.map(([value, name]) => name || `${value}`);
             if (String(called) !== names) {
                 boxes = called.map((name, i) => ({...check(name, on => put(i, on)),
                     color: ink(`colour of ${name}`, to => of.set({preset: 'labels',
-                        colormap: painted(of.get(this.recipe.keys).colormap, labels()[i][0], to)}))}));
+                        colormap: painted(of.get(this.store.keys).colormap, labels()[i][0], to)}))}));
                 list.replaceChildren(...boxes.map(({color, label}) => make('div', {className: 'row'}, color, label)));
             }
             names = String(called);
             now.forEach(([, , color, opacity], i) => {
-                boxes[i].box.checked = opacity;
+                boxes[i].box.checked = opacity > 0;
                 boxes[i].color.value = color;
             });
         });
@@ -386,34 +456,37 @@ export class Panel {
     }
 
     time() {
-        const {page, recipe} = this, told = make('output');
-        if (page.info.times < 2)
+        const {info, store} = this, told = make('output');
+        if (info.times < 2)
             return '';
-        const input = slider('time step', 0, page.info.times - 1, 1, recipe,
-            value => recipe.set({time: value}));
+        const input = slider('time step', 0, info.times - 1, 1, store,
+            value => store.set({time: value}));
         this.follow(keys => {
-            input.value = keys.time ?? 0;
-            told.textContent = `${keys.time ?? 0} / ${page.info.times - 1}`;
+            input.value = `${keys.time ?? 0}`;
+            told.textContent = `${keys.time ?? 0} / ${info.times - 1}`;
         });
         return section('Time', true, row('Step', input, told),
             button('Play', 'Play or stop the time steps', this.actions.play));
     }
 
     labels() {
-        const {recipe, page} = this;
-        const title = this.kept(line('title of the picture', value => recipe.set({title: value || null})),
+        const {store, info} = this;
+        const title = this.kept(line('title of the picture', value => store.set({title: value || null})),
             keys => keys.title ?? '');
         const time = this.kept(select([['', 'nothing'], ['time', 'time'], ['step', 'number of the step']],
-            annotate => recipe.set({annotate: annotate || null})), keys => keys.annotate ?? '');
-        const {legend = 'scale'} = recipe.keys; // its title is kept
-        const boxes = [['letters of the sides', 'no-labels', null, true],
+            annotate => store.set({annotate: annotate || null})), keys => keys.annotate ?? '');
+        const {legend = 'scale'} = store.keys; // its title is kept
+        /** @type {[name: string, key: 'no-labels'|'legend'|'box', on: string|true|null, off?: true][]} */
+        const rows = [['letters of the sides', 'no-labels', null, true],
             ['colour bar', 'legend', legend === 'scale' || legend], ['scale bar', 'legend', 'scale'],
-            ["edges of the volume's box", 'box', 'outline'], ['its axes, with numbers', 'box', 'axes']].map(([name, key, on, off = null]) => make('div', {},
+            ["edges of the volume's box", 'box', 'outline'], ['its axes, with numbers', 'box', 'axes']];
+        const boxes = rows.map(([name, key, on, off = null]) => make('div', {},
             this.box(name, ({[key]: now = null}) => now === on, checked => {
-                recipe.set({[key]: checked ? on : off});
-                key === 'box' && this.actions.fit(); // it is larger
+                store.set({[key]: checked ? on : off});
+                if (key === 'box')
+                    this.actions.fit(); // it is larger
             })));
-        const drawn = page.info.mask === undefined ? boxes.slice(0, 3) // by the kernel of a notebook
+        const drawn = info.mask === undefined ? boxes.slice(0, 3) // by the kernel of a notebook
             : [...boxes, row('Title', title), row('Time', time)];
         return section('Letters and bars', false, ...drawn);
     }

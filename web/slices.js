@@ -8,19 +8,30 @@ import {apart, button, check, listen, make, number, pinched, row, section, selec
     slider, surface} from './controls.js';
 import {STEPS} from './keys.js';
 import {kindOf} from './pointer.js';
+import {known} from './store.js';
+
+/** @typedef {import('./types').Info} Info */
+/** @typedef {import('./types').Pair} Pair */
+/** @typedef {import('./types').Vector} Vector */
+/** @typedef {import('./types').Frame} Frame */
 
 export const COLORS = ['#ff7b72', '#56d364', '#6db1ff', '#e3b341']; // across x, y, z of the grid
 const REST = 200; // ms until the exact picture is asked for
 const STEP = 60; // of the wheel
 const MAGNIFIED_MOST = 40;
 
-/** Of a CT, in Hounsfield units: width and level. */
+/** Of a CT, in Hounsfield units: width and level.
+ * @type {Record<string, Pair>} */
 const WINDOWS = {'soft tissue': [400, 40], brain: [80, 40], liver: [150, 60], lung: [1500, -600],
     bone: [1800, 400]};
 
+/** @param {number[][]} matrix
+ * @param {number} k */
 const column = (matrix, k) => matrix.map(line => line[k]);
 
-/** The voxel of a place in the world, and back. */
+/** The voxel of a place in the world, and back.
+ * @param {Info} info
+ * @param {Vector} place */
 function voxel({matrix, dims}, place) {
     const [a, b, c, origin] = [0, 1, 2, 3].map(k => column(matrix, k));
     const from = add(place, origin, -1), whole = dot(a, cross(b, c));
@@ -28,11 +39,16 @@ function voxel({matrix, dims}, place) {
         Math.max(0, Math.min(dims[i] - 1, Math.round(dot(from, way) / whole))));
 }
 
+/** @param {Info} info
+ * @param {number[]} index */
 export function world({matrix}, index) {
     return matrix.map(line => +(line[3] + dot(line.slice(0, 3), index)).toPrecision(9));
 }
 
-/** "R" or, of no patient, "+x": where a step along the grid goes. */
+/** "R" or, of no patient, "+x": where a step along the grid goes.
+ * @param {Info} info
+ * @param {number} k
+ * @param {number} sign */
 function letter(info, k, sign) {
     const way = column(info.matrix, k).map(x => x * sign);
     const axis = way.reduce((best, x, i) => Math.abs(x) > Math.abs(way[best]) ? i : best, 0);
@@ -40,7 +56,10 @@ function letter(info, k, sign) {
         : (way[axis] < 0 ? '-' : '+') + 'xyz'[axis];
 }
 
-/** "S 12.5 mm", or "z = 3 um". */
+/** "S 12.5 mm", or "z = 3 um".
+ * @param {Info} info
+ * @param {number} k
+ * @param {Vector} at */
 function placeText(info, k, at) {
     const way = column(info.matrix, k).map(Math.abs), axis = way.indexOf(Math.max(...way));
     const [unit, length] = info.axes[axis], value = at[axis] / length;
@@ -49,18 +68,45 @@ function placeText(info, k, at) {
         : `${'xyz'[axis]} = ${short(value)} ${unit}`;
 }
 
-class Pane {
+export class Pane {
+    /** @param {Slices} owner
+     * @param {number} number_ */
     constructor(owner, number_) {
-        Object.assign(this, {owner, number: number_, zoom: 1, turned: 0, fingers: new Map(),
-            middle: [0, 0]}); // of the pane, in pixels from that of the slice
+        this.owner = owner;
+        this.number = number_;
+        this.zoom = 1;
+        this.turned = 0; // the wheel, since the last slice
+        /** @type {Map<number, Pair>} */
+        this.fingers = new Map();
+        /** @type {string|null} */
+        this.kind = null; // of a drag
+        /** @type {Pair} */
+        this.middle = [0, 0]; // of the pane, in pixels from that of the slice
+        /** @type {import('./types').SliceInfo|null} */
+        this.slice = null; // null: not known yet
+
+        // The picture that is shown, and the one that was asked for last.
+        /** @type {ImageBitmap|null} */
+        this.bitmap = null;
+        /** @type {Blob|null} */
+        this.file = null;
+        this.busy = false;
+        this.exact = false;
+        this.asked = ''; // what was wished then
+        this.n = 0;
+        this.timer = 0;
         this.canvas = make('canvas', {tabIndex: 0, role: 'img'});
         this.caption = make('figcaption', {});
-        this.slider = slider('slice', 0, 1, 1, owner.recipe,
+        this.slider = slider('slice', 0, 1, 1, owner.store,
             value => owner.step(this, value - owner.index[this.along]));
         this.element = make('figure', {className: 'pane'}, this.canvas, this.caption,
             button('\u2922', 'This slice alone, or all (Enter)', () => owner.alone(this)), this.slider);
         listen(this.canvas, this);
         new ResizeObserver(() => this.draw()).observe(this.canvas);
+    }
+
+    get info() {
+        return known(this.slice);
     }
 
     get along() {
@@ -71,9 +117,10 @@ class Pane {
         this.owner.alone(this);
     }
 
+    /** @param {PointerEvent} event */
     up(event) {
         if (this.fingers.delete(event.pointerId) && !this.fingers.size)
-            this.owner.recipe.end();
+            this.owner.store.end();
     }
 
     /** Where the slice lies in the pane: its corner, and the length of a pixel. */
@@ -86,48 +133,60 @@ class Pane {
 
     /** Pixels of the slice, of the crosshair. */
     get cross() {
-        return [[this.info.right, this.info.width], [this.info.down, this.info.height]].map(
-            ([[k, sign], length]) => {
-                const count = this.owner.page.info.dims[k], at = this.owner.index[k];
-                return ((sign > 0 ? at : count - 1 - at) + 0.5) / count * length;
-            });
+        const {right, width, down, height} = this.info;
+        /** @param {Pair} way
+         * @param {number} length */
+        const at = ([k, sign], length) => {
+            const count = this.owner.info.dims[k], i = this.owner.index[k];
+            return ((sign > 0 ? i : count - 1 - i) + 0.5) / count * length;
+        };
+        return [at(right, width), at(down, height)];
     }
 
-    /** The voxel under the pointer, in this slice. */
+    /** The voxel under the pointer, in this slice.
+     * @param {Pair} pointer */
     voxelAt([x, y]) {
         const index = [...this.owner.index], {place, info} = this;
-        [[info.right, info.width, x - place.x], [info.down, info.height, y - place.y]].forEach(
-            ([[k, sign], length, at]) => {
-                const count = this.owner.page.info.dims[k];
-                const i = Math.floor(at / place.scale / length * count);
-                index[k] = Math.max(0, Math.min(count - 1, sign > 0 ? i : count - 1 - i));
-            });
+        /** @param {Pair} way
+         * @param {number} length
+         * @param {number} at */
+        const put = ([k, sign], length, at) => {
+            const count = this.owner.info.dims[k];
+            const i = Math.floor(at / place.scale / length * count);
+            index[k] = Math.max(0, Math.min(count - 1, sign > 0 ? i : count - 1 - i));
+        };
+        put(info.right, info.width, x - place.x);
+        put(info.down, info.height, y - place.y);
         return index;
     }
 
+    /** @param {MouseEvent} event
+     * @returns {Pair} */
     at({offsetX, offsetY}) {
         return [offsetX, offsetY];
     }
 
+    /** @param {PointerEvent} event */
     down(event) {
         this.canvas.focus();
         this.canvas.setPointerCapture(event.pointerId);
         this.fingers.set(event.pointerId, this.at(event));
-        this.kind = kindOf(event, this.owner.page.tool);
-        this.owner.recipe.begin();
-        if (this.fingers.size === 1 && !['pan', 'window'].includes(this.kind))
+        this.kind = kindOf(event, this.owner.store.tool);
+        this.owner.store.begin();
+        if (this.fingers.size === 1 && this.kind !== 'pan' && this.kind !== 'window')
             this.owner.goTo(this.voxelAt(this.at(event)));
         return true;
     }
 
+    /** @param {PointerEvent} event */
     move(event) {
         const before = this.fingers.get(event.pointerId), now = this.at(event);
         if (!before)
             return;
         const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
         if (this.fingers.size === 2) {
-            const [factor, ...at] = pinched(this.fingers, event.pointerId, now);
-            this.zoomAt(factor, at);
+            const [factor, x, y] = pinched(this.fingers, event.pointerId, now);
+            this.zoomAt(factor, [x, y]);
             this.pan(dx / 2, dy / 2);
         } else if (this.kind === 'pan') {
             this.pan(dx, dy);
@@ -139,13 +198,17 @@ class Pane {
         this.fingers.set(event.pointerId, now);
     }
 
+    /** @param {number} dx
+     * @param {number} dy */
     pan(dx, dy) {
         const {scale} = this.place;
         this.middle = [this.middle[0] - dx / scale, this.middle[1] - dy / scale];
         this.draw();
     }
 
-    /** About a place, which stays. */
+    /** About a place, which stays.
+     * @param {number} factor
+     * @param {Pair} place */
     zoomAt(factor, [x, y]) {
         const before = this.place;
         this.zoom = Math.max(1, Math.min(MAGNIFIED_MOST, this.zoom * factor));
@@ -156,6 +219,7 @@ class Pane {
         this.draw();
     }
 
+    /** @param {WheelEvent} event */
     wheel(event) {
         const by = event.deltaY * (event.deltaMode ? 30 : 1);
         if (event.ctrlKey) {
@@ -169,6 +233,7 @@ class Pane {
         return true;
     }
 
+    /** @param {KeyboardEvent} event */
     key({key, ctrlKey, metaKey, altKey}) {
         const {owner, info: {right, down}, canvas} = this, by = STEPS[key];
         const page = key === 'PageUp' ? 1 : key === 'PageDown' ? -1 : 0;
@@ -195,7 +260,7 @@ class Pane {
 
     /** What the server is to draw. */
     get wish() {
-        const {index, keys} = this.owner;
+        const {index, crossing: keys} = this.owner;
         return {axis: this.info.axis, index: index[this.along], range: keys.range,
             colored: keys.colored ?? false};
     }
@@ -204,7 +269,7 @@ class Pane {
     ask() {
         const {owner} = this;
         clearTimeout(this.timer);
-        if (this.busy || !this.info || !owner.keys)
+        if (this.busy || !this.slice || !owner.keys)
             return;
         const wish = JSON.stringify([this.wish, owner.data]);
         const exact = wish === this.asked;
@@ -223,6 +288,7 @@ class Pane {
             send();
     }
 
+    /** @param {Frame} frame */
     async take(frame) {
         if (frame.n !== this.n)
             return;
@@ -236,13 +302,13 @@ class Pane {
     }
 
     show() {
-        const {info: whole} = this.owner.page, {index} = this.owner, count = whole.dims[this.along];
+        const {info: whole, index} = this.owner, count = whole.dims[this.along];
         const name = this.info.axis.length === 1 ? `across ${this.info.axis}` : this.info.axis;
         this.caption.textContent = `${name} ${index[this.along]}/${count - 1}, ` +
             placeText(whole, this.along, world(whole, index));
         this.caption.style.color = COLORS[this.along];
-        this.slider.max = count - 1;
-        this.slider.value = index[this.along];
+        this.slider.max = `${count - 1}`;
+        this.slider.value = `${index[this.along]}`;
         this.slider.setAttribute('aria-label', `${name} slice`);
         this.canvas.setAttribute('aria-label', `Slice ${this.caption.textContent}. Arrow keys move ` +
             'the crosshair, Page keys choose the slice, Enter shows it alone.');
@@ -250,20 +316,23 @@ class Pane {
     }
 
     draw() {
-        const {canvas, bitmap, info} = this;
-        const {g, width, height} = bitmap ? surface(canvas, {alpha: false}) : {};
-        if (!g)
+        const {canvas, bitmap, slice: info} = this, area = bitmap && info && surface(canvas, {alpha: false});
+        if (!area)
             return;
+        const {g, width, height} = area;
         const {x, y, scale} = this.place;
         g.imageSmoothingQuality = 'high';
         g.drawImage(bitmap, x, y, info.width * scale, info.height * scale);
-        const [px, py] = this.cross.map((at, i) => [x, y][i] + at * scale);
+        const {cross: [right, down]} = this, px = x + right * scale, py = y + down * scale;
         this.line(g, COLORS[info.right[0]], [px, 0, px, py - 9], [px, py + 9, px, height]);
         this.line(g, COLORS[info.down[0]], [0, py, px - 9, py], [px + 9, py, width, py]);
         this.write(g, width, height);
-        this.owner.page.measure?.drawIn(this, g);
+        this.owner.drawOver(this, g);
     }
 
+    /** @param {CanvasRenderingContext2D} g
+     * @param {string} color
+     * @param {...[number, number, number, number]} parts */
     line(g, color, ...parts) {
         g.strokeStyle = color;
         g.beginPath();
@@ -274,9 +343,16 @@ class Pane {
         g.stroke();
     }
 
-    /** Letters of the sides, window and level, the value where the lines cross. */
+    /** Letters of the sides, window and level, the value where the lines cross.
+     * @param {CanvasRenderingContext2D} g
+     * @param {number} width
+     * @param {number} height */
     write(g, width, height) {
-        const {page: {info}, keys, value} = this.owner, {right: [r, a], down: [d, b]} = this.info;
+        const {info, crossing: keys, value} = this.owner, {right: [r, a], down: [d, b]} = this.info;
+        /** @param {string} text
+         * @param {number} x
+         * @param {number} y
+         * @param {CanvasTextAlign} align */
         const put = (text, x, y, align) => {
             g.textAlign = align;
             g.strokeText(text, x, y);
@@ -300,10 +376,21 @@ class Pane {
 }
 
 export class Slices {
-    /** `views` is the element that holds the picture, and gets the panes. */
-    constructor(recipe, page, engine, views) {
-        Object.assign(this, {recipe, page, engine, views});
+    /** `views` is the element that holds the picture, and gets the panes.
+     * @param {import('./store.js').Store} store
+     * @param {HTMLElement} views */
+    constructor(store, views) {
+        const {engine} = store;
+        this.store = store;
+        this.engine = engine;
+        this.views = views;
         this.n = 0;
+        this.value = NaN; // where the lines cross
+        this.at = ''; // where a value was asked for last,
+        this.waits = false; // and it has not come
+        /** Draws what else lies in a slice.
+         * @type {(pane: Pane, g: CanvasRenderingContext2D) => void} */
+        this.drawOver = () => {};
         this.panes = [1, 2, 3].map(i => new Pane(this, i));
         engine.on('small', frame => this.panes[frame.pane - 1]?.take(frame));
         engine.on('slice', ({pane}) => { // there is none; why has been said
@@ -315,43 +402,56 @@ export class Slices {
         });
         engine.on('open', () => this.renew());
         engine.on('value', message => this.hearValue(message));
-        recipe.onChange(() => this.update());
+        store.onChange(() => this.update());
     }
 
+    /** Nothing where there are no slices. */
     get keys() {
-        return this.recipe.keys.slices;
+        return this.store.keys.slices;
+    }
+
+    get crossing() {
+        return known(this.keys);
+    }
+
+    get info() {
+        return known(this.store.info);
     }
 
     get index() {
-        return voxel(this.page.info, this.keys.at);
+        return voxel(this.info, this.crossing.at);
     }
 
     /** The volume that is shown: another crop, time, channel has other slices. */
     get data() {
         const {crop, time, channel, component, labels, preset, colormap, scale, overlay,
-            'overlay-look': look} = this.recipe.keys;
+            'overlay-look': look} = this.store.keys;
         return [crop, time, channel, component, labels, overlay, look,
-            this.keys.colored && [preset, colormap, scale]];
+            this.crossing.colored && [preset, colormap, scale]];
     }
 
+    /** @param {Partial<import('./types').Crossing>} changes */
     set(changes) {
-        this.recipe.set({slices: {...this.keys, ...changes}});
+        this.store.set({slices: {...this.crossing, ...changes}});
     }
 
     toggle() {
-        const {info} = this.page;
+        const {info} = this;
         if (!info.slices)
             return;
         this.views.classList.remove('alone');
-        this.recipe.set({slices: this.keys ? null : {range: apart(info.window, 5),
+        this.store.set({slices: this.keys ? null : {range: apart(info.window, 5),
             at: world(info, info.dims.map(count => Math.floor(count / 2)))}});
     }
 
+    /** @param {number[]} index */
     goTo(index) {
-        const {info} = this.page;
+        const {info} = this;
         this.set({at: world(info, index.map((i, k) => Math.max(0, Math.min(info.dims[k] - 1, i))))});
     }
 
+    /** @param {Pane} pane
+     * @param {number} by */
     step(pane, by) {
         const index = this.index;
         index[pane.along] += by;
@@ -359,17 +459,22 @@ export class Slices {
             this.goTo(index);
     }
 
+    /** @param {number} width
+     * @param {number} level */
     setWindow(width, level) {
         if (width > 0)
             this.set({range: apart([level - width / 2, level + width / 2], 6)});
     }
 
-    /** To the right: wider; up: a higher level. */
+    /** To the right: wider; up: a higher level.
+     * @param {number} dx
+     * @param {number} dy */
     drag(dx, dy) {
-        const [low, high] = this.keys.range, width = high - low;
+        const [low, high] = this.crossing.range, width = high - low;
         this.setWindow(width * Math.exp(dx / 250), (low + high) / 2 - width * dy / 300);
     }
 
+    /** @param {Pane} pane */
     alone(pane) {
         const on = !this.views.classList.contains('alone');
         this.views.classList.toggle('alone', on);
@@ -377,15 +482,19 @@ export class Slices {
             each.element.classList.toggle('chosen', on && each === pane);
     }
 
+    /** @param {Pane} pane */
     command(pane) {
         this.engine.ask('slice-command', pane.wish);
     }
 
     /** After a connection was lost, or for another volume. */
     renew() {
-        for (const pane of this.panes)
-            pane.busy = pane.exact = pane.asked = null;
-        this.at = this.waits = null;
+        for (const pane of this.panes) {
+            pane.busy = pane.exact = false;
+            pane.asked = '';
+        }
+        this.at = '';
+        this.waits = false;
         this.update();
     }
 
@@ -399,9 +508,10 @@ export class Slices {
         this.engine.ask('value', {at: this.index});
     }
 
+    /** @param {import('./types').Heard['value']} message */
     hearValue({at, value}) {
         this.waits = false;
-        if (!this.keys || !this.page.info?.slices)
+        if (!this.keys || !this.store.info?.slices)
             return;
         if (String(at) === String(this.index)) {
             this.value = value ?? NaN;
@@ -419,20 +529,20 @@ export class Slices {
             pane.element.remove();
         }
         this.views.classList.remove('alone');
-        this.at = null;
+        this.at = '';
         if (held)
-            this.recipe.end();
+            this.store.end();
     }
 
     update() {
-        const {info} = this.page, on = Boolean(this.keys && info?.slices);
-        this.views.classList.toggle('sliced', on);
-        if (!on) {
+        const slices = this.keys && this.store.info?.slices;
+        this.views.classList.toggle('sliced', Boolean(slices));
+        if (!slices) {
             this.putAway();
             return;
         }
         this.panes.forEach((pane, i) => {
-            pane.info = info.slices[i];
+            pane.slice = slices[i];
             if (!pane.element.isConnected)
                 this.views.append(pane.element);
             pane.show();
@@ -441,24 +551,26 @@ export class Slices {
         this.askValue();
     }
 
-    /** Of the panel. */
+    /** Of the panel.
+     * @param {(each: () => void) => void} follow */
     section(follow) {
-        const {page: {info}} = this, all = () => this.keys?.range ?? info.window;
+        const {info} = this, all = () => this.keys?.range ?? info.window;
         const on = check('beside the picture (x)', () => this.toggle());
-        const width = number('width of the window of slices',
+        const wide = number('width of the window of slices',
             value => this.setWindow(value, (all()[0] + all()[1]) / 2));
-        const level = number('level of the window of slices',
+        const middle = number('level of the window of slices',
             value => this.setWindow(all()[1] - all()[0], value));
         const named = select([['', 'choose'], ['all', 'of the volume'],
             ...info.hounsfield ? Object.keys(WINDOWS) : []], name => {
             const [low, high] = info.window;
-            this.setWindow(...WINDOWS[name] ?? [high - low, (low + high) / 2]);
+            const [width, level] = WINDOWS[name] ?? [high - low, (low + high) / 2];
+            this.setWindow(width, level);
             named.value = '';
         });
         const colored = check('in the colours of the look', value => this.set({colored: value}));
         const places = ['x', 'y', 'z'].map((name, k) => number(`voxel ${name} where slices cross`,
             value => this.goTo(this.index.map((i, j) => j === k ? Math.round(value) : i)), 1));
-        const more = make('div', {}, row('Window', named), row('Width, level', width, level),
+        const more = make('div', {}, row('Window', named), row('Width, level', wide, middle),
             row('Voxel', ...places), colored.label, make('div', {className: 'row'},
                 ...info.slices?.map((each, i) => button(`Command, ${each.axis}`,
                     `The command that makes the slice ${each.axis}`,
@@ -469,8 +581,8 @@ export class Slices {
             more.hidden = !keys;
             if (!keys)
                 return;
-            show(width, short(keys.range[1] - keys.range[0]));
-            show(level, short((keys.range[0] + keys.range[1]) / 2));
+            show(wide, short(keys.range[1] - keys.range[0]));
+            show(middle, short((keys.range[0] + keys.range[1]) / 2));
             this.index.forEach((i, k) => show(places[k], i));
             colored.box.checked = Boolean(keys.colored);
         });

@@ -38,12 +38,12 @@ const shapes = ({times}) => ({
     'overlay-look': isText, channel: isOne(isText, isNumber), component: isOne(isText, isNumber),
     slices: value => isRange(value?.range) && isList(3)(value.at)});
 
-/** The keys that are good, and the names of the others.
- * @param {import('./types').Keys} keys
+/** The keys that are good, which have the types that their tests say, and the names of the others.
+ * @param {Record<string, unknown>} keys
  * @param {import('./types').Info} info */
 export function sifted(keys, info) {
     const tests = shapes(info);
-    /** @type {import('./types').Keys} */
+    /** @type {Record<string, unknown>} */
     const good = {};
     /** @type {string[]} */
     const wrong = [];
@@ -54,7 +54,7 @@ export function sifted(keys, info) {
         else if (value !== null)
             wrong.push(key);
     }
-    return {good, wrong};
+    return {good: /** @type {import('./types').Keys} */ (good), wrong};
 }
 
 /** Says what was left out.

@@ -1,7 +1,7 @@
 // viewer.js - puts the page together: the picture, the lines around it, and what
 // the buttons do.
 
-import {button, make, select} from './controls.js';
+import {button, context, make, select} from './controls.js';
 import {ServerEngine} from './engine_server.js';
 import {aimed, unproject} from './camera.js';
 import {MODES, help, listenToKeys} from './keys.js';
@@ -9,9 +9,11 @@ import {MEASURES, Measure} from './measure.js';
 import {Overlay} from './overlay.js';
 import {Panel} from './panel.js';
 import {Pointer, TOOLS} from './pointer.js';
-import {Recipe} from './recipe.js';
 import {Slices} from './slices.js';
+import {Store, known} from './store.js';
 import {leftOut, sifted} from './valid.js';
+
+/** @typedef {import('./types').Keys} Keys */
 
 const SIDE_MOST = 4096;
 const FEW = 8; // drafts whose figures nobody could read
@@ -20,13 +22,12 @@ const LEVELS = ['draft', 'almost final', 'final'];
 const given = new URLSearchParams(location.hash.slice(1));
 window.onhashchange = () => location.reload(); // another secret, another link
 const engine = new ServerEngine(given.get('token') ?? '');
-const recipe = new Recipe(engine);
-const page = {info: null, look: null, histogram: null, rest: null, clipping: false, tool: 'turn', letters: true};
+const store = new Store(engine);
 
 // --- elements ----------------------------------------------------------------
 
 const canvas = make('canvas', {tabIndex: 0, role: 'img', 'aria-label': 'The volume'});
-const paint = canvas.getContext('2d', {alpha: false});
+const paint = context(canvas, {alpha: false});
 const said = make('p', {className: 'said', role: 'status', tabIndex: 0});
 const title = make('span', {className: 'faint grow'});
 const level = make('span', {className: 'faint'});
@@ -41,7 +42,8 @@ const views = make('div', {className: 'views'}, picture);
 
 // --- what is said --------------------------------------------------------------
 
-let quiet;
+let quiet = 0;
+/** @param {string} line */
 function say(line, stays = false, time = 6000) {
     said.textContent = line;
     picture.onpointerdown = ({target}) => stays || target === said || say(''); // it covers what is touched
@@ -53,14 +55,18 @@ function say(line, stays = false, time = 6000) {
         }, time);
 }
 
-page.say = say;
+store.say = say;
 
+/** @type {Record<string, string>} */
 const SECTIONS = {channel: 'Channels', crop: 'Crop', clip: 'Clip', preset: 'Presets', range: 'Range',
     window: 'Window', opacity: 'Opacity', colormap: 'Colours', time: 'Step', light: 'Light', title: 'Title'};
 
-/** What is said of options, in words of the page: "--channel N" is its section Channels. */
+/** What is said of options, in words of the page: "--channel N" is its section Channels.
+ * @param {string} line */
 const plain = line => line.replace(/--([a-z][a-z-]*)( [A-Z]+\b)?/g, (all, name) => SECTIONS[name] ?? name);
 
+/** @param {string} name
+ * @param {...(Node|string)} children */
 function open(name, ...children) {
     dialog.replaceChildren(make('h2', {textContent: name}), ...children,
         make('p', {}, button('Close', 'Close', () => dialog.close())));
@@ -68,15 +74,21 @@ function open(name, ...children) {
         dialog.showModal();
 }
 
-/** Asks whether something is to be done. */
-function question(name, text, [answer, act]) {
+/** Asks whether something is to be done.
+ * @param {string} name
+ * @param {string} text
+ * @param {string} answer
+ * @param {() => void} act */
+function question(name, text, answer, act) {
     open(name, make('p', {textContent: text}), make('p', {}, button(answer, answer, () => {
         dialog.close();
         act();
     })));
 }
 
-/** Shows a text, and copies it where the browser allows that. */
+/** Shows a text, and copies it where the browser allows that.
+ * @param {string} name
+ * @param {string} value */
 async function copy(name, value) {
     copied.value = value;
     open(name, copied);
@@ -90,48 +102,51 @@ async function copy(name, value) {
     }
 }
 
+/** @param {string} name
+ * @param {Blob} blob */
 function save(name, blob) {
     const link = make('a', {href: URL.createObjectURL(blob), download: name});
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-const baseName = () => (page.info.name.split(':').at(-1).split('.')[0] || 'picture');
+const baseName = () => known(store.info).name.split(':').at(-1)?.split('.')[0] || 'picture';
 
 // --- actions --------------------------------------------------------------------
 
-let player;
+let player = 0;
+/** @type {import('./types').Actions} */
 const actions = {
     view(name) {
-        recipe.set({view: name, azimuth: 0, elevation: 0, roll: 0, position: null, up: null});
+        store.set({view: name, azimuth: 0, elevation: 0, roll: 0, position: null, up: null});
     },
     fit() {
-        recipe.remember(['zoom', 'target', 'fit']);
+        store.remember(['zoom', 'target', 'fit']);
         engine.ask('fit');
     },
     mode() {
-        const next = MODES[(MODES.indexOf(recipe.keys.mode ?? 'over') + 1) % MODES.length];
-        const {low, high} = page.look;
-        recipe.set(next === 'iso' ? {mode: next, iso: recipe.keys.iso ?? (low + high) / 2}
+        const next = MODES[(MODES.indexOf(store.keys.mode ?? 'over') + 1) % MODES.length];
+        const {low, high} = known(store.look);
+        store.set(next === 'iso' ? {mode: next, iso: store.keys.iso ?? (low + high) / 2}
             : {mode: next, iso: null});
         say(`Mode ${next}`);
     },
     perspective() {
-        const on = (recipe.keys.perspective ?? 0) > 0;
-        recipe.set({perspective: on ? 0 : page.info.fov});
+        const on = (store.keys.perspective ?? 0) > 0;
+        store.set({perspective: on ? 0 : known(store.info).fov});
     },
-    letters: () => recipe.set({'no-labels': recipe.keys['no-labels'] ? null : true}),
+    letters: () => store.set({'no-labels': store.keys['no-labels'] ? null : true}),
     play() {
-        if (player || page.info.times < 2) {
+        const {times} = known(store.info);
+        if (player || times < 2) {
             clearInterval(player);
-            player = null;
+            player = 0;
             return;
         }
-        player = setInterval(() => recipe.set(
-            {time: ((recipe.keys.time ?? 0) + 1) % page.info.times}), 200);
+        player = setInterval(() => store.set({time: ((store.keys.time ?? 0) + 1) % times}), 200);
     },
     drag() {
-        tool.value = page.tool = TOOLS[(TOOLS.findIndex(([name]) => name === page.tool) + 1) % TOOLS.length][0];
+        tool.value = store.tool = TOOLS[(TOOLS.findIndex(([name]) => name === store.tool) + 1) % TOOLS.length][0];
         measure.take(null);
         say(`A drag ${tool.selectedOptions[0].text}`);
     },
@@ -140,7 +155,7 @@ const actions = {
     measure(name) {
         const own = measure.offered && measure.tool !== name ? name : null;
         measure.take(own);
-        tool.value = own ?? page.tool;
+        tool.value = own ?? store.tool;
     },
     length: () => actions.measure('line'),
     angle: () => actions.measure('angle'),
@@ -153,42 +168,42 @@ const actions = {
     movie: () => engine.ask('movie-command'),
     link() {
         const url = new URL(location.href);
-        const keys = {...recipe.keys};
-        delete keys.size;
-        url.hash = new URLSearchParams({token: engine.token, recipe: JSON.stringify(keys)});
+        const {size, ...keys} = store.keys; // all of them: elsewhere no look was before
+        url.hash = `${new URLSearchParams({token: engine.token, recipe: JSON.stringify(keys)})}`;
         copy('Link to this state', url.href);
     },
     file: () => engine.ask('recipe'),
     save() {
-        if (page.rest)
-            save(`${baseName()}.png`, page.rest);
+        if (store.rest)
+            save(`${baseName()}.png`, store.rest);
         else
             say('The picture is saved when it is final: wait a moment.');
     },
     reset() {
-        recipe.replace(page.begin);
+        store.replace(begin);
     },
-    undo: () => recipe.undo() || say('Nothing to undo'),
-    redo: () => recipe.redo() || say('Nothing to redo'),
-    help: () => open('Mouse, fingers and keys', ...help(page)),
+    undo: () => store.undo() || say('Nothing to undo'),
+    redo: () => store.redo() || say('Nothing to redo'),
+    help: () => open('Mouse, fingers and keys', ...help(store)),
 };
 
 // --- the picture ------------------------------------------------------------------
 
 /** Pixels of the screen, as many as the server draws. */
-function fitWindow(anew) {
+function fitWindow(anew = false) {
     const scale = devicePixelRatio || 1;
-    if (!picture.clientWidth || page.info?.live) // a slice is shown alone; a movie has one size
+    if (!picture.clientWidth || store.info?.live) // a slice is shown alone; a movie has one size
         return;
     const size = [picture.clientWidth, picture.clientHeight].map(
         side => Math.max(16, Math.min(SIDE_MOST, Math.round(side * scale))));
-    if (anew || `${recipe.keys.size}` !== `${size}`)
-        recipe.apply({size});
+    if (anew || `${store.keys.size}` !== `${size}`)
+        store.apply({size});
 }
 
-/** The pixels of a draft: those of this page, unless it was made for the shape of another. */
+/** The pixels of a draft: those of this page, unless it was made for the shape of another.
+ * @param {import('./types').Frame} frame */
 function enlarged({width, height}) {
-    const [across, down] = recipe.keys.size ?? [width, height];
+    const [across, down] = store.keys.size ?? [width, height];
     return Math.abs(across * height - down * width) <= 2 * Math.max(across, down) ? [across, down]
         : [width, height];
 }
@@ -205,13 +220,13 @@ engine.on('picture', frame => {
         paint.fillStyle = '#000';
         paint.fillRect(0, 0, width, height);
     }
-    paint.drawImage(frame.bitmap, 0, 0, width, height);
-    const own = !recipe.size || `${recipe.size}` === `${[frame.width, frame.height]}`;
-    page.rest = frame.level === 2 && own ? frame.blob : null;
-    page.frames = (page.frames ?? 0) + 1;
-    if (canvas.dataset.level !== '0' || frame.level || page.frames % FEW === 0) {
-        canvas.dataset.level = frame.level;
-        level.textContent = page.info?.live ? `step ${page.step}` : frame.level < 2 || own ? LEVELS[frame.level]
+    paint.drawImage(known(frame.bitmap), 0, 0, width, height);
+    const own = !store.size || `${store.size}` === `${[frame.width, frame.height]}`;
+    store.rest = frame.level === 2 && own ? frame.blob : null;
+    store.frames++;
+    if (canvas.dataset.level !== '0' || frame.level || store.frames % FEW === 0) {
+        canvas.dataset.level = `${frame.level}`;
+        level.textContent = store.info?.live ? `step ${store.step}` : frame.level < 2 || own ? LEVELS[frame.level]
             : 'as another page has it';
         figures.textContent = `${frame.width} x ${frame.height}, drawn in ${frame.render.toFixed(1)} ms, ` +
             `packed in ${frame.pack.toFixed(1)} ms, ${(frame.bytes / 1024).toFixed(0)} kB, ` +
@@ -221,47 +236,52 @@ engine.on('picture', frame => {
 });
 
 function describe() {
-    if (!page.info)
+    const {keys, info} = store;
+    if (!info)
         return;
-    const {keys} = recipe;
-    canvas.setAttribute('aria-label', `${page.info.name} from ${keys.view ?? page.info.view}, ` +
+    canvas.setAttribute('aria-label', `${info.name} from ${keys.view ?? info.view}, ` +
         `azimuth ${keys.azimuth ?? 0}, elevation ${keys.elevation ?? 0} degrees, ` +
         `preset ${keys.preset ?? 'automatic'}, mode ${keys.mode ?? 'over'}`);
-    undo.disabled = !recipe.before.length;
-    redo.disabled = !recipe.after.length;
+    undo.disabled = !store.before.length;
+    redo.disabled = !store.after.length;
 }
 
 // --- recipes of files -----------------------------------------------------------------
 
+/** @param {unknown} path */
 const lastOf = path => `${path}`.split('/').at(-1);
 
-/** Takes the state of a file; what a page cannot change stays as it is. */
-async function take([file]) {
+/** Takes the state of a file; what a page cannot change stays as it is.
+ * @param {ArrayLike<File>} files */
+async function take({0: file}) {
     if (!file) // a text was dropped
         return;
-    const {info} = page, taken = {};
+    const info = known(store.info);
+    /** @type {Record<string, unknown>} */
+    const taken = {};
     try {
         const keys = JSON.parse(await file.text()), name = lastOf(keys.input ?? info.name);
         for (const [key, value] of Object.entries(keys)) {
-            const switched = key === 'mask' || key === 'overlay';
-            if (switched ? [true, lastOf(value)].includes(info[key]) : info.keys.includes(key))
+            const switched = key === 'mask' || key === 'overlay', own = switched && info[key];
+            if (switched ? own === true || own === lastOf(value) : info.keys?.includes(key))
                 taken[key] = switched || value;
         }
         const {good, wrong} = sifted(taken, info);
         if (!Object.keys(good).length)
             throw 0;
-        recipe.replace({slices: recipe.keys.slices, ...good});
+        store.replace({slices: store.keys.slices, ...good});
         say(`${leftOut(wrong)} ${name === info.name ? '' : `The recipe is of ${name}, and taken.`}`.trim());
     } catch {
         say(`${file.name} is no recipe, as Recipe and --save-config write them.`);
     }
 }
 
-/** The state of a link: of what it says, all that is understood. */
+/** The state of a link: of what it says, all that is understood.
+ * @param {string} text */
 function openLink(text) {
     try {
-        const {size, ...keys} = JSON.parse(text), {good, wrong} = sifted(keys, page.info);
-        recipe.replace(good);
+        const {size, ...keys} = JSON.parse(text), {good, wrong} = sifted(keys, known(store.info));
+        store.replace(good);
         say(leftOut(wrong));
     } catch {
         say('The link is damaged: its recipe cannot be read.');
@@ -273,50 +293,59 @@ function openLink(text) {
 /** Buttons work when the volume and its look are known; what a notebook's kernel does
  * not offer is hidden. */
 function ready() {
-    if (page.info && page.look)
+    const {info, look} = store;
+    if (info && look)
         for (const each of buttons.querySelectorAll('button'))
             each.disabled = false;
-    sliced.hidden = filmed.hidden = !page.info?.slices;
-    commanded.hidden = page.info?.live;
-    chooser.hidden = !page.info?.keys;
+    sliced.hidden = filmed.hidden = !info?.slices;
+    commanded.hidden = Boolean(info?.live);
+    chooser.hidden = !info?.keys;
     describe();
 }
 
-/** What this page showed when its viewer went away; whether it is another viewer, or file. */
-let lost = null, returns = null;
+/** What this page showed when its viewer went away.
+ * @type {{keys: Keys, unheard: import('./types').Changes}} */
+let lost = {keys: {}, unheard: {}};
+/** Whether it is another viewer, or file.
+ * @type {{other: boolean, same: boolean}|null} */
+let returns = null;
 
 /** Another viewer has none of the state: it gets that of this page if nobody has changed
  * its own and the file is the same, else when the user says so.  The same one gets what
- * it has not heard. */
+ * it has not heard.
+ * @param {boolean|undefined} touched */
 function returned(touched) {
-    const {other, same} = returns ?? {};
+    const {other, same} = returns ?? {}, info = known(store.info);
     if (!other) {
         if (Object.keys(lost.unheard).length)
-            recipe.apply(lost.unheard);
+            store.apply(lost.unheard);
         return;
     }
-    const {good} = sifted(lost.keys, page.info);
+    const {good} = sifted(lost.keys, info);
     if (same && !touched)
-        recipe.replace(good);
-    else if (JSON.stringify(good) !== JSON.stringify(sifted(recipe.keys, page.info).good))
-        question('The viewer was started again', `It shows ${page.info.name}: ${same ? 'another page has changed it'
+        store.replace(good);
+    else if (JSON.stringify(good) !== JSON.stringify(sifted(store.keys, info).good))
+        question('The viewer was started again', `It shows ${info.name}: ${same ? 'another page has changed it'
             : 'this is another file'}. This page had a state of its own.`,
-        ['Take the state of this page', () => recipe.replace(good)]);
+        'Take the state of this page', () => store.replace(good));
 }
 
-const slices = new Slices(recipe, page, engine, views);
-const pointer = new Pointer(canvas, recipe, page, (x, y) => engine.ask('depth', {x, y, size: [canvas.width, canvas.height]}));
-const measure = page.measure = new Measure(recipe, page, engine, pointer, slices, views);
-measure.leave = () => actions.measure(measure.tool);
-const panel = new Panel(recipe, page, engine, actions, slices);
-const overlay = new Overlay(recipe, page, pointer, slices);
+const slices = new Slices(store, views);
+const pointer = new Pointer(canvas, store, (x, y) => engine.ask('depth', {x, y, size: [canvas.width, canvas.height]}));
+/** @type {Measure} */
+const measure = new Measure(store, pointer, slices, views, () => actions.measure(measure.tool));
+const panel = new Panel(store, actions, slices, measure);
+const overlay = new Overlay(store, pointer, slices);
 picture.append(measure.canvas, ...overlay.elements);
 let first = true, fresh = true; // the first state of all, and of a connection
+/** What the page began with.
+ * @type {Keys} */
+let begin = {};
 
 engine.on('closed', reason => say(plain(reason), true));
 engine.on('open', () => {
-    const own = Object.entries(recipe.keys).filter(([key]) => !recipe.computed.includes(key) && key !== 'size');
-    lost = {keys: Object.fromEntries(own), unheard: engine.lost};
+    const {size, ...own} = store.own;
+    lost = {keys: own, unheard: engine.lost};
     returns = null;
     fresh = true;
     say('');
@@ -332,50 +361,48 @@ engine.on('command', message => copy('The command that makes this picture', mess
 engine.on('recipe', message => save(`${baseName()}.json`,
     new Blob([`${message.text}\n`], {type: 'application/json'})));
 engine.on('depth', ({x, y, depth}) => {
-    if (!Number.isFinite(depth)) {
+    if (depth === null || !Number.isFinite(depth)) {
         say('Nothing opaque is there to turn around; modes over and iso have depths.');
         return;
     }
-    const [width, height] = pointer.box, {keys} = recipe;
-    const place = unproject(keys, page.info, (x - 0.5) * width + pointer.shift,
+    const [width, height] = pointer.box, {keys} = store, info = known(store.info);
+    const place = unproject(keys, info, (x - 0.5) * width + pointer.shift,
         (y - 0.5) * height, depth, pointer.side)
         .map(value => +value.toPrecision(6));
-    const changes = aimed(keys, page.info, place);
-    recipe.set(keys.slices ? {...changes, slices: {...keys.slices, at: place}} : changes);
+    const changes = aimed(keys, info, place);
+    store.set(keys.slices ? {...changes, slices: {...keys.slices, at: place}} : changes);
 });
 engine.on('step', ({step}) => {
-    page.step = step;
+    store.step = step;
 });
 engine.on('histogram', message => {
-    page.histogram = message;
+    store.histogram = message;
     panel.editor.draw();
 });
 engine.on('look', message => {
-    page.look = message;
+    store.answered = message;
     panel.update();
     ready();
 });
 engine.on('replaced', ({gone, again}) => {
-    const {name} = page.info;
+    const {name} = known(store.info);
     if (again)
         question(`${name} is another file now`, `${name} was replaced since it was opened. What is shown is the ` +
             'one before; a crop, another time or a clip plane would show voxels of the new one.',
-        ['Open the new one', () => engine.ask('reopen')]);
+        'Open the new one', () => engine.ask('reopen'));
     else
         say(gone ? `${name} was removed: what is shown is as it was.` : `${name} was replaced: start the viewer again.`);
 });
 engine.on('info', info => {
-    const known = page.info?.file === info.file ? page.info : null;
-    if (page.info)
-        returns ??= {other: page.info.instance !== info.instance, same: known !== null && page.info.name === info.name};
-    page.info = info;
-    if (!known)
-        page.whole = info.dims;
+    const before = store.info, part = before !== null && before.file === info.file; // of the same volume
+    if (before)
+        returns ??= {other: before.instance !== info.instance, same: part && before.name === info.name};
+    store.info = info;
     document.title = `${info.name} - snowglass`;
     title.textContent = `${info.name}  ${info.dims.join(' x ')}${info.live ? '' : ` ${info.type}`}, ` +
         `${info.spacing.map(x => +x.toPrecision(4)).join(' x ')} ` +
         [...new Set(info.axes.map(axis => axis[0]))].join(', ');
-    if (known) // a part of the same volume
+    if (part)
         panel.update();
     else
         panel.build();
@@ -388,15 +415,16 @@ engine.on('state', ({touched}) => {
     if (!fresh)
         return;
     if (first)
-        page.begin = {...recipe.keys};
+        begin = store.own;
     first = fresh = false;
     fitWindow(true);
     if (!begins)
         returned(touched);
-    if (begins && given.has('recipe'))
-        openLink(given.get('recipe'));
+    const link = given.get('recipe');
+    if (begins && link)
+        openLink(link);
 });
-recipe.onChange(() => {
+store.onChange(() => {
     panel.update();
     describe();
 });
@@ -404,10 +432,10 @@ recipe.onChange(() => {
 const tool = select([...TOOLS, ...MEASURES], name => {
     const own = MEASURES.some(([each]) => each === name);
     measure.take(own ? name : null);
-    page.tool = own ? page.tool : name;
+    store.tool = own ? store.tool : name;
 });
 const sliced = button('Slices', 'Three slices beside the picture (x)', actions.slices);
-const file = make('input', {type: 'file', onchange: () => shared.take(file.files)});
+const file = make('input', {type: 'file', onchange: () => shared.take(file.files ?? [])});
 const chooser = button('Open', 'Open a recipe, or drop it on the page', () => {
     file.value = ''; // the same one may be chosen again
     file.click();
@@ -423,14 +451,14 @@ buttons.append(make('label', {}, 'Drag ', tool), sliced,
     button('Reset', 'All as it was when the page was opened', actions.reset));
 for (const each of buttons.querySelectorAll('button'))
     each.disabled = true;
-document.getElementById('viewer').append(
+document.getElementById('viewer')?.append(
     make('section', {className: 'stage', 'aria-label': 'Picture'},
         make('div', {className: 'top'}, make('h1', {textContent: 'snowglass'}), title, level, chooser,
             button('Help', 'Mouse, fingers and keys (?)', actions.help)),
         views,
         make('div', {className: 'bottom'}, figures, buttons)),
     panel.element, dialog);
-listenToKeys(recipe, page, actions, pointer);
+listenToKeys(store, actions, pointer);
 new ResizeObserver(() => {
     overlay.draw();
     measure.draw();
@@ -438,11 +466,12 @@ new ResizeObserver(() => {
         fitWindow();
 }).observe(picture);
 engine.open();
-document.addEventListener('pointerdown', () => recipe.part(), true);
+document.addEventListener('pointerdown', () => store.part(), true);
 document.addEventListener('dragover', event => event.preventDefault());
 document.addEventListener('drop', event => {
     event.preventDefault();
-    shared.take(event.dataTransfer.files);
+    shared.take(event.dataTransfer?.files ?? []);
 });
-const shared = {engine, recipe, page, slices, overlay, take, file}; // for the console, for tests,
-window.snowglass = shared; // and for a page that opens volumes
+// For the console, for tests, and for a page that opens volumes.
+const shared = {engine, store, recipe: store, page: store, slices, measure, overlay, take, file};
+Object.assign(window, {snowglass: shared});

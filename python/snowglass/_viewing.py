@@ -3,7 +3,7 @@ draws.  The newest state wins.  The messages are those of `snowglass serve`, who
 page it is: texts as dictionaries, pictures as bytes behind a head of 32 bytes.
 
     {"t": "hello", "page": "a"}       from pages; answered by info, look, state
-    {"t": "set", "n": 17, "recipe": {"azimuth": 30, "preset": None}}
+    {"t": "set", "step": 17, "keys": {"azimuth": 30, "preset": None}}
     {"t": "moving", "on": True}       drafts suffice
     {"t": "ack", "n": 17}             of a picture: the next one may come
     {"t": "ask", "what": "histogram"}
@@ -83,13 +83,13 @@ class Page:
 
     def __init__(self, name: str) -> None:
         self.name, self.moving, self.heard = name, False, time.monotonic()
-        self.sets: list[tuple[int, int]] = []  # n, and the revision that has it
+        self.sets: list[tuple[int, int]] = []  # step, and the revision that has it
         self.under_way = False                 # a picture that is not acknowledged
         self.waiting: Optional[tuple[int, bytes]] = None
 
-    def n_of(self, revision: int) -> int:
-        """Its newest message that a revision has in it."""
-        return max((n for n, of in self.sets if of <= revision), default=0)
+    def step_of(self, revision: int) -> int:
+        """Its newest set that a revision has in it."""
+        return max((step for step, of in self.sets if of <= revision), default=0)
 
 
 class Viewing:
@@ -148,8 +148,8 @@ class Viewing:
     def _state(self, to: Optional[str] = None, but: Optional[str] = None) -> None:
         for name, page in self.pages.items():
             if name == to or to is None and name != but:
-                self._tell({"t": "state", "n": page.n_of(self.revision),
-                            "recipe": self.recipe}, name)
+                self._tell({"t": "state", "step": page.step_of(self.revision),
+                            "keys": self.recipe}, name)
 
     def _greet(self, name: str, message: dict[str, Any]) -> None:
         if name not in self.pages and len(self.pages) >= PAGES_MOST:
@@ -165,8 +165,8 @@ class Viewing:
         del self.pages[name]
 
     def _set(self, name: str, message: dict[str, Any]) -> None:
-        changes, page = dict(message["recipe"]), self.pages[name]
-        page.sets = page.sets[-63:] + [(int(message["n"]), self.revision + 1)]
+        changes, page = dict(message["keys"]), self.pages[name]
+        page.sets = page.sets[-63:] + [(int(message["step"]), self.revision + 1)]
         try:
             self._merge(changes)
         except (TypeError, ValueError) as error:
@@ -222,7 +222,7 @@ class Viewing:
             page.waiting = revision, frame
             return
         page.waiting, page.under_way = None, True
-        head = struct.pack("<I", page.n_of(revision))
+        head = struct.pack("<I", page.step_of(revision))
         self.send({"t": "frame", "to": page.name},
                   frame[:4] + head + frame[8:])
 

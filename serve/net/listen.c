@@ -172,13 +172,13 @@ static int greet(listener *l, client *c, const message *m) {
 
 static void set(listener *l, client *c, const message *m) {
     uint32_t revision = state_revision(l->state);
-    json_t *changes = sizes_take(l->clients, c, l->state, m->recipe);
+    json_t *changes = sizes_take(l->clients, c, l->state, m->keys);
     const bool other = json_object_size(changes) || !c->size.width;
     char *fault = other ? state_set(l->state, changes, &revision) : NULL;
     set_log_note(&c->sets, m->n, revision);
     json_decref(changes);
-    if (json_object_size(m->recipe) >
-        (json_object_get(m->recipe, "size") ? 1u : 0u))
+    if (json_object_size(m->keys) >
+        (json_object_get(m->keys, "size") ? 1u : 0u))
         state_touch(l->state);
     if (!other) {
         sizes_serve(c, l->state, l->box);

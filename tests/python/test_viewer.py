@@ -57,7 +57,7 @@ class Page:
 
     def set(self, **keys):
         self.n += 1
-        self.say(t="set", n=self.n, recipe={
+        self.say(t="set", step=self.n, keys={
             name.replace("_", "-"): value for name, value in keys.items()})
         return self.n
 
@@ -127,8 +127,8 @@ class Viewers(InFolder):
         self.assertIn(info["view"], info["views"])
         self.assertEqual(len(look["strip"]), 64)
         self.assertGreater(look["count"], 1)
-        self.assertEqual(state["recipe"]["azimuth"], 20)
-        self.assertEqual(state["recipe"]["fit"], "volume")
+        self.assertEqual(state["keys"]["azimuth"], 20)
+        self.assertEqual(state["keys"]["fit"], "volume")
         page.rest()
         levels = [frame.level for frame in page.frames]
         self.assertEqual(levels, [0, 1, 2])
@@ -181,9 +181,9 @@ class Viewers(InFolder):
         other.say(t="hello")
         other.rest()
         n = other.set(mode="mip")
-        state = page.wait(lambda: page.last("state")["recipe"].get("mode") and
+        state = page.wait(lambda: page.last("state")["keys"].get("mode") and
                           page.last("state"))
-        self.assertEqual((state["recipe"]["mode"], state["n"]), ("mip", 0))
+        self.assertEqual((state["keys"]["mode"], state["step"]), ("mip", 0))
         other.rest(n)
         page.wait(lambda: page.frames[-1].bytes == other.frames[-1].bytes)
         self.assertEqual(widget.recipe["mode"], "mip")
@@ -207,7 +207,7 @@ class Viewers(InFolder):
         self.assertEqual((thumbnail.width, thumbnail.height), (96, 96))
         page.set(zoom=0.3)
         page.question("fit")
-        page.wait(lambda: page.last("state")["recipe"]["zoom"] > 0.6)
+        page.wait(lambda: page.last("state")["keys"]["zoom"] > 0.6)
         recipe = json.loads(page.ask("recipe"))
         self.assertEqual(recipe["input"], "phantom:head")
         frame = page.rest()
@@ -248,13 +248,13 @@ class Viewers(InFolder):
                 page.set(**keys)
                 self.assertIn(line, page.text("said", count)["text"])
         page.set(mask="/etc/passwd", azimuth=33)
-        page.wait(lambda: page.last("state")["recipe"].get("azimuth") == 33)
-        self.assertNotIn("mask", page.last("state")["recipe"])
+        page.wait(lambda: page.last("state")["keys"].get("azimuth") == 33)
+        self.assertNotIn("mask", page.last("state")["keys"])
         count = len(page.said)
         page.question("depth", x=0.5, y=0.5)
         self.assertIn("has no depth", page.text("said", count)["text"])
         for message in ({"t": "set", "page": "a"}, {"t": "what", "page": "a"},
-                        {"t": "set", "n": 1, "recipe": {}, "page": "z"}, 7,
+                        {"t": "set", "step": 1, "keys": {}, "page": "z"}, 7,
                         {"t": "ask", "page": "a"}):
             widget.receive(message)
         page.set(azimuth=5, opacity=None, preset=None)

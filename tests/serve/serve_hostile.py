@@ -140,7 +140,7 @@ def die_in_a_frame(server, reads):
             if reads:
                 page.need(9000)
             else:
-                page.send_frame(0x81, b'{"t":"set","n":1,"recipe":', length=60000)
+                page.send_frame(0x81, b'{"t":"set","step":1,"keys":', length=60000)
             os.write(begun, b".")
             time.sleep(600)
         finally:

@@ -167,15 +167,15 @@ def odd_messages(server):
         check(f"so is time {time_of}", said and '"time"' in said["text"], said)
     page.set(4, time="last")
     check("the last step is taken", page.receive_picture(2, 4) is not None)
-    for odd, name in (({"t": "set", "n": 5, "recipe": {
+    for odd, name in (({"t": "set", "step": 5, "keys": {
             "mask": "/etc/passwd", "input": "/etc/passwd", "elevation": 11}}, "mask, input"),
-                      ({"t": "set", "recipe": {}}, "set: "), ({"t": "turn"}, "kind"),
+                      ({"t": "set", "keys": {}}, "set: "), ({"t": "turn"}, "kind"),
                       ({"t": "ask", "what": 7}, "ask: ")):
         page.say(odd)
         said = page.receive_text("said")
         check(f"what a page cannot say is named and left out: {name}",
               said and name in said["text"], said)
-    state = Page(server).receive_text("state")["recipe"]
+    state = Page(server).receive_text("state")["keys"]
     check("the rest is taken, and no file", state["elevation"] == 11 and
           not {"mask", "input"} & set(state), state)
     page.question("nothing")
@@ -237,7 +237,7 @@ def many_pages(server):
     last = None
     slow.say({"t": "ack", "n": 0})
     slow.say({"t": "ack", "n": 0})
-    while last is None or last["recipe"].get("azimuth") != 41:
+    while last is None or last["keys"].get("azimuth") != 41:
         last = slow.receive_text("state")
         if last is None:
             break
@@ -281,15 +281,15 @@ def same_bytes(server, recipe):
 def crop_and_back(server):
     """A crop keeps the object's size; a step back names its zoom itself."""
     page = Page(server)
-    before = page.receive_text("state")["recipe"]
+    before = page.receive_text("state")["keys"]
     page.set(1, crop=[[12, 36], [12, 36], [12, 36]])
-    cropped = page.receive_text("state")["recipe"]
+    cropped = page.receive_text("state")["keys"]
     check("a crop keeps the scale", cropped["zoom"] < 0.8 * before["zoom"],
           f"{before['zoom']} {cropped['zoom']}")
     page.rest(2, crop=None, zoom=before["zoom"], target=before["target"])
     page.close()
     page = Page(server)
-    now = page.receive_text("state")["recipe"]
+    now = page.receive_text("state")["keys"]
     check("a step back has its own zoom", now["zoom"] == before["zoom"],
           f"{before['zoom']} {now['zoom']}")
     page.close()
@@ -305,17 +305,17 @@ def two_at_once(server):
         other.set(100 + n, elevation=n)
     for page, own, key, last in ((one, "azimuth", "elevation", 29),
                                  (other, "elevation", "azimuth", 129)):
-        state = {"recipe": {}}
-        while state and state["recipe"].get(key) != 29:
+        state = {"keys": {}}
+        while state and state["keys"].get(key) != 29:
             state = page.receive_text("state")
         check(f"the other's {key} arrives", state is not None)
         if state:
             base = 100 if own == "elevation" else 0
             check(f"its n is that of its {own}",
-                  state["n"] in (0, base + state["recipe"].get(own, 0)), state)
+                  state["step"] in (0, base + state["keys"].get(own, 0)), state)
     one.set(77, zoom="wrong")
     state = one.receive_text("state")
-    while state and state["n"] != 77:
+    while state and state["step"] != 77:
         state = one.receive_text("state")
     check("a refused change counts as heard", state is not None)
     one.close()
@@ -327,12 +327,12 @@ def first_state():
     server = Server("phantom:head", "--dims", "64x64x64")
     page = Page(server)
     page.set(1, zoom=3.5)
-    begin = page.receive_text("state")["recipe"]
+    begin = page.receive_text("state")["keys"]
     check("the first state is framed", "target" in begin, begin)
     page.receive_picture(2, 1)
     page.close()
     page = Page(server)
-    now = page.receive_text("state")["recipe"]
+    now = page.receive_text("state")["keys"]
     check("a zoom that is set at once stays", now["zoom"] == 3.5, now)
     page.close()
     server.stop()
@@ -713,7 +713,7 @@ def one_channel():
         check("a channel that is not there is refused",
               "channel 5 does not exist; the voxels have 1" in said, said)
         state = page.receive_text("state")
-        check("and not kept", state and "channel" not in state["recipe"], state)
+        check("and not kept", state and "channel" not in state["keys"], state)
 
 
 def mask_switch():
@@ -729,7 +729,7 @@ def mask_switch():
         info = page.receive_text("info")
         check("a page hears of a mask, and which labels it keeps",
               info["mask"] is True and info["labels"] == "1", info)
-        state = page.receive_text("state")["recipe"]
+        state = page.receive_text("state")["keys"]
         check("but not of its file", state["mask"] is True and
               "secret" not in json.dumps(state), state)
         shown = []
@@ -808,7 +808,7 @@ def taken_back():
             page.set(n, **wrong)
             key, = wrong
             line = page.receive_text("said")["text"]
-            recipe = page.receive_text("state")["recipe"]
+            recipe = page.receive_text("state")["keys"]
             check(f"a wrong {key} is said, and taken back", key not in recipe and
                   recipe["azimuth"] == 20 and recipe["size"] == [64, 48],
                   f"{line} {recipe}")

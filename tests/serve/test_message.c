@@ -26,11 +26,11 @@ static void messages_are_read(void **state) {
     assert_string_equal(m.token, "abc");
     assert_true(m.webp);
     message_free(&m);
-    m = read_good("{\"t\":\"set\",\"n\":4294967295,\"recipe\":"
+    m = read_good("{\"t\":\"set\",\"step\":4294967295,\"keys\":"
                   "{\"azimuth\":30,\"preset\":null,\"size\":[640,480]}}");
     assert_int_equal(m.kind, MESSAGE_SET);
     assert_int_equal(m.n, UINT32_MAX);
-    assert_int_equal(json_object_size(m.recipe), 3);
+    assert_int_equal(json_object_size(m.keys), 3);
     message_free(&m);
     m = read_good("{\"t\":\"moving\",\"on\":true}");
     assert_true(m.kind == MESSAGE_MOVING && m.on);
@@ -70,12 +70,12 @@ static void what_says_nothing_is_named(void **state) {
         "{\"t\":\"nothing\"}",
         "{\"t\":\"hello\"}",
         "{\"t\":\"hello\",\"token\":1}",
-        "{\"t\":\"set\",\"n\":1}",
-        "{\"t\":\"set\",\"n\":1,\"recipe\":[]}",
-        "{\"t\":\"set\",\"n\":-1,\"recipe\":{}}",
-        "{\"t\":\"set\",\"n\":4294967296,\"recipe\":{}}",
-        "{\"t\":\"set\",\"n\":1.5,\"recipe\":{}}",
-        "{\"t\":\"set\",\"recipe\":{}}",
+        "{\"t\":\"set\",\"step\":1}",
+        "{\"t\":\"set\",\"step\":1,\"keys\":[]}",
+        "{\"t\":\"set\",\"step\":-1,\"keys\":{}}",
+        "{\"t\":\"set\",\"step\":4294967296,\"keys\":{}}",
+        "{\"t\":\"set\",\"step\":1.5,\"keys\":{}}",
+        "{\"t\":\"set\",\"keys\":{}}",
         "{\"t\":\"moving\"}",
         "{\"t\":\"moving\",\"on\":1}",
         "{\"t\":\"ack\"}",
@@ -94,15 +94,15 @@ static void what_says_nothing_is_named(void **state) {
 static void assert_left_out(const char *key, const char *value) {
     char text[256], wanted[256];
     snprintf(text, sizeof text,
-             "{\"t\":\"set\",\"n\":1,\"recipe\":{\"zoom\":2,\"%s\":%s}}", key,
+             "{\"t\":\"set\",\"step\":1,\"keys\":{\"zoom\":2,\"%s\":%s}}", key,
              value);
     snprintf(wanted, sizeof wanted, "Left out, as a page cannot set it: %s",
              key);
     message m = read_good(text);
     assert_int_equal(m.kind, MESSAGE_SET);
     assert_string_equal(m.left_out, wanted);
-    assert_int_equal(json_object_size(m.recipe), 1);
-    assert_non_null(json_object_get(m.recipe, "zoom"));
+    assert_int_equal(json_object_size(m.keys), 1);
+    assert_non_null(json_object_get(m.keys, "zoom"));
     message_free(&m);
 }
 
@@ -122,26 +122,26 @@ static void a_page_names_no_file(void **state) {
                                         "{}",         "1",    "false"};
     for (size_t i = 0; i < 2 * (sizeof masks / sizeof *masks); i++)
         assert_left_out(i % 2 ? "mask" : "overlay", masks[i / 2]);
-    message m = read_good("{\"t\":\"set\",\"n\":1,\"recipe\":"
+    message m = read_good("{\"t\":\"set\",\"step\":1,\"keys\":"
                           "{\"mask\":true,\"overlay\":null}}");
-    assert_int_equal(json_object_size(m.recipe), 2);
+    assert_int_equal(json_object_size(m.keys), 2);
     message_free(&m);
 }
 
 static void many_names_that_are_left_out_end_in_dots(void **state) {
     (void)state;
     static char text[40000];
-    size_t at = (size_t)sprintf(text, "{\"t\":\"set\",\"n\":1,\"recipe\":{");
+    size_t at = (size_t)sprintf(text, "{\"t\":\"set\",\"step\":1,\"keys\":{");
     for (int i = 0; i < 2000; i++)
         at += (size_t)sprintf(text + at, "\"key %d\":0,", i);
     sprintf(text + at, "\"zoom\":3}}");
     message m = read_good(text);
     assert_non_null(strstr(m.left_out, "key 0, key 1, key 2"));
     assert_string_equal(m.left_out + strlen(m.left_out) - 5, ", ...");
-    assert_int_equal(json_object_size(m.recipe), 1);
+    assert_int_equal(json_object_size(m.keys), 1);
     message_free(&m);
     snprintf(text, sizeof text,
-             "{\"t\":\"set\",\"n\":1,\"recipe\":{\"%0300d\":1}}", 7);
+             "{\"t\":\"set\",\"step\":1,\"keys\":{\"%0300d\":1}}", 7);
     m = read_good(text);
     assert_string_equal(m.left_out, "Left out, as a page cannot set it: ...");
     message_free(&m);
@@ -155,8 +155,8 @@ static void pictures_have_a_largest_size(void **state) {
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         assert_left_out("size", sizes[i]);
     message m =
-        read_good("{\"t\":\"set\",\"n\":1,\"recipe\":{\"size\":[4096,4096]}}");
-    assert_int_equal(json_object_size(m.recipe), 1);
+        read_good("{\"t\":\"set\",\"step\":1,\"keys\":{\"size\":[4096,4096]}}");
+    assert_int_equal(json_object_size(m.keys), 1);
     message_free(&m);
 }
 

@@ -250,7 +250,7 @@ class Page:
         self.send_frame(0x81, message)
 
     def set(self, n, **recipe):
-        self.say({"t": "set", "n": n, "recipe": {
+        self.say({"t": "set", "step": n, "keys": {
             name.replace("_", "-"): value for name, value in recipe.items()}})
 
     def rest(self, n, **recipe):

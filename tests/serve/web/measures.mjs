@@ -5,7 +5,7 @@ import {readFileSync, writeFileSync} from 'node:fs';
 
 const STEP = [1, 2, 4], FIRST = [10, -20, 30];
 const words = page => page.evaluate(() => (window.snowglass.recipe.keys.measure ?? '').split('; ').filter(Boolean));
-const items = page => page.evaluate(() => window.snowglass.page.measure.items);
+const items = page => page.evaluate(() => window.snowglass.measure.items);
 const points = text => text.split(' ').filter(word => word.split(',').length === 3).map(word => word.split(',').map(Number));
 
 /** Where a voxel is in the pane of a slice across z, whose x is to the patient's left. */
@@ -25,7 +25,7 @@ async function drag(page, from, to) {
 }
 
 const known = (page, count) => page.waitForFunction(n => {
-    const all = window.snowglass.page.measure.items;
+    const all = window.snowglass.measure.items;
     return all.length === n && all.every(item => item.result);
 }, count, {polling: 20});
 
@@ -69,7 +69,7 @@ async function slices({check, rest}, page) {
     check('with values of its voxels', near(ellipse.mean, 15 + 115 + 10, 3) && near(ellipse.count, area / 2, 0.05 * area) &&
         ellipse.unit === 'mm', JSON.stringify(ellipse));
     await page.keyboard.press('Escape');
-    check('Escape puts the tool away', await page.evaluate(() => !window.snowglass.page.measure.tool), '');
+    check('Escape puts the tool away', await page.evaluate(() => !window.snowglass.measure.tool), '');
     await rest(page);
 }
 
@@ -84,7 +84,7 @@ async function pointed({check}, page) {
 
 async function chosen({check, rest}, page) {
     await page.mouse.click(...await spotOf(page, [15, 11.5]));
-    const which = () => page.evaluate(() => window.snowglass.page.measure.chosen);
+    const which = () => page.evaluate(() => window.snowglass.measure.chosen);
     check('a click on a line chooses it', await which() === 0, await which());
     await page.keyboard.press('Delete');
     await rest(page);
