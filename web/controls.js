@@ -19,16 +19,20 @@ export function make(tag, properties = {}, ...children) {
     return element;
 }
 
-/** @type {(name: string, text: string) => boolean} */
-const has = (name, text) => name.toLowerCase().includes(text.toLowerCase());
+/** @param {string} text */
+const words = text => ` ${text.toLowerCase().split(/[^a-z0-9-]+/).filter(Boolean).join(' ')} `;
 
-/** What is spoken has what is written in it.
+/** Whether a name has the words of a text.
+ * @type {(name: string, text: string) => boolean} */
+const has = (name, text) => words(name).includes(words(text));
+
+/** What is spoken begins with what is written, unless that is in it.
  * @param {string} text
  * @param {string} name
  * @param {() => void} press */
 export function button(text, name, press) {
     return make('button', {type: 'button', textContent: text, title: name,
-        'aria-label': /[a-z]/i.test(text) && !has(name, text) ? `${name} (${text})` : name, onclick: press});
+        'aria-label': /[a-z\d]/i.test(text) && !has(name, text) ? `${text}: ${name}` : name, onclick: press});
 }
 
 let count = 0;
@@ -145,6 +149,15 @@ export function surface(canvas, options) {
     const g = context(canvas, options);
     g.scale(dense, dense);
     return {g, width, height};
+}
+
+/** Says of an element more than its name: what it does, and its key.
+ * @template {Element} T
+ * @param {T} element
+ * @param {string} text */
+export function tip(element, text) {
+    element.setAttribute('title', text);
+    return element;
 }
 
 /** What two fingers do, of which one has moved: the distance's factor, and the middle.

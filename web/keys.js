@@ -1,35 +1,10 @@
 // keys.js - the keyboard, where no field takes it.
 
 import {zoomed} from './camera.js';
-import {check, make} from './controls.js';
 import {known} from './store.js';
 
 export const VIEWS = ['anterior', 'posterior', 'left', 'right', 'superior', 'inferior'];
 export const MODES = ['over', 'mip', 'minip', 'mean', 'sum', 'iso'];
-
-const TEXTS = [['Drag', 'turn'], ['Shift or middle drag', 'move'], ['Wheel', 'zoom'],
-    ['Right drag', 'window, level'], ['Ctrl right drag', 'opacity'],
-    ['Ctrl drag', 'light'], ['Double click', 'turn around this point'],
-    ['u a e', 'measure: length, angle, ellipse; Esc: no more; Delete: the chosen one'], ['x', 'three slices'], ['k', 'handles of clip planes'],
-    ['On a slice', 'drag: where they cross; wheel: next slice; right drag: window, level; ' +
-        'Ctrl wheel: zoom; double click: alone'],
-    ['Two fingers', 'move and zoom'], ['Arrows', 'as Drag: 5 degrees, Shift: 1'], ['d', 'next kind of drag'],
-    ['+ -', 'zoom'], ['r', 'frame all'],
-    ['1 - 6', 'front, back, left, right, top, bottom'], ['m', 'next mode'],
-    ['p', 'perspective'], ['l', 'letters'], ['Space', 'play time steps'],
-    ['c v', 'the command, that of a movie'], ['s', 'save the picture'], ['z Shift+z', 'undo, redo; Ctrl+z, Ctrl+y too'],
-    ['?', 'this help']];
-
-/** And whether keys that are single letters act.
- * @param {import('./store.js').Store} store */
-export function help(store) {
-    const {box, label} = check('single letters, digits and signs act', on => {
-        store.letters = on;
-    });
-    box.checked = store.letters;
-    return [label, make('table', {}, ...TEXTS.map(([key, text]) => make('tr', {},
-        make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: text}))))];
-}
 
 /** @type {Record<string, [across: number, down: number]>} */
 export const STEPS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};

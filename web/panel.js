@@ -3,7 +3,7 @@
 import {facing, grips, isFull, PLANES_MOST, tilted, tiltedTo} from './clip.js';
 import {Channels} from './channels.js';
 import {Colors, ownColors, painted, ranged, text} from './colors.js';
-import {button, check, ink, line, make, number, row, section, select, short, show, slider}
+import {button, check, ink, line, make, number, row, section, select, short, show, slider, tip}
     from './controls.js';
 import {BY_GRADIENT, Editor} from './editor.js';
 import {MODES, VIEWS} from './keys.js';
@@ -140,7 +140,7 @@ export class Panel {
             alone.hidden = mixed(store.look);
             isoRow.hidden = keys.mode !== 'iso';
         });
-        return section('Look', true, alone, row('Mode', modes), isoRow,
+        return section('Look', true, alone, row('Mode', tip(modes, 'How values along a ray become a pixel (m: the next)')), isoRow,
             this.box('logarithmic values', ({scale}) => scale === 'log', on => store.set({scale: on ? 'log' : null})),
             this.box('on both sides of 0', ({scale}) => scale?.startsWith('sym'),
                 on => store.set({scale: on ? 'symlog' : null})));
@@ -239,9 +239,9 @@ export class Panel {
     camera() {
         const {store, actions, info} = this;
         const names = info.medical ? VIEWS : WORLD_VIEWS;
-        const views = make('div', {className: 'row'}, ...[...names, 'iso'].map(name =>
+        const views = make('div', {className: 'row'}, ...[...names, 'iso'].map((name, i) =>
             button(info.medical ? name[0].toUpperCase() + name.slice(1) : name,
-                `View from ${name}`, () => actions.view(name))));
+                `View from ${name}` + (info.medical && i < VIEWS.length ? ` (${i + 1})` : ''), () => actions.view(name))));
         const angles = /** @type {const} */ (['azimuth', 'elevation', 'roll']).map(key => this.kept(
             number(`${key} in degrees`, value => store.set({[key]: value})),
             keys => short(keys[key] ?? 0)));
@@ -250,9 +250,10 @@ export class Panel {
         const height = this.kept(number('height, a factor', value => value > 0 && store.set({'z-scale': value})),
             keys => keys['z-scale'] ?? '');
         return section('Camera', true, views, row('Angles', ...angles),
-            row('Zoom', zoom, button('Frame all', 'Frame what the look shows', actions.fit)),
+            row('Zoom', zoom, button('Frame all', 'Frame what the look shows (r)', actions.fit)),
             info.medical ? '' : row('Height', height),
-            this.box('perspective', keys => (keys.perspective ?? 0) > 0, actions.perspective));
+            tip(this.box('perspective', keys => (keys.perspective ?? 0) > 0, actions.perspective),
+                'What is nearer is larger (p)'));
     }
 
     /** Two planes across each axis of the world, tilted ones, and the box that is
@@ -280,6 +281,7 @@ export class Panel {
         const clips = section('Clip', false, ...rows, ...this.tilted(), make('div', {className: 'row'}, cut,
             button('Remove all', 'Remove all clip planes', () => store.set({clip: null}))),
         ...this.masking(), ...info.live ? [] : this.cropping());
+        tip(clips.firstElementChild ?? clips, 'Planes that cut, with handles on the picture (k)');
         clips.addEventListener('toggle', () => {
             store.clipping = clips.open;
             store.changed();
@@ -466,7 +468,7 @@ export class Panel {
             told.textContent = `${keys.time ?? 0} / ${info.times - 1}`;
         });
         return section('Time', true, row('Step', input, told),
-            button('Play', 'Play or stop the time steps', this.actions.play));
+            button('Play', 'Play or stop the time steps (Space)', this.actions.play));
     }
 
     labels() {
@@ -486,6 +488,7 @@ export class Panel {
                 if (key === 'box')
                     this.actions.fit(); // it is larger
             })));
+        tip(boxes[0], 'Right, left, anterior, posterior, superior, inferior (l)');
         const drawn = info.mask === undefined ? boxes.slice(0, 3) // by the kernel of a notebook
             : [...boxes, row('Title', title), row('Time', time)];
         return section('Letters and bars', false, ...drawn);

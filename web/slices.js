@@ -365,7 +365,8 @@ export class Pane {
         g.textBaseline = 'middle';
         put(letter(info, r, a), width - 5, height / 2, 'right');
         put(letter(info, r, -a), 5, height / 2, 'left');
-        put(letter(info, d, -b), width / 2, 32, 'center');
+        const caption = this.caption.offsetTop + this.caption.offsetHeight; // it may have two lines
+        put(letter(info, d, -b), width / 2, Math.max(32, caption + 10), 'center');
         put(letter(info, d, b), width / 2, height - 46, 'center');
         g.font = '12px system-ui, sans-serif';
         const [low, high] = keys.range;

@@ -1,10 +1,11 @@
 // viewer.js - puts the page together: the picture, the lines around it, and what
 // the buttons do.
 
-import {button, context, make, select} from './controls.js';
+import {button, context, make, select, tip} from './controls.js';
 import {ServerEngine} from './engine_server.js';
 import {aimed, unproject} from './camera.js';
-import {MODES, help, listenToKeys} from './keys.js';
+import {Hints, help} from './help.js';
+import {MODES, listenToKeys} from './keys.js';
 import {MEASURES, Measure} from './measure.js';
 import {Overlay} from './overlay.js';
 import {Panel} from './panel.js';
@@ -61,6 +62,14 @@ store.say = say;
 const SECTIONS = {channel: 'Channels', crop: 'Crop', clip: 'Clip', preset: 'Presets', range: 'Range',
     window: 'Window', opacity: 'Opacity', colormap: 'Colours', time: 'Step', light: 'Light', title: 'Title'};
 
+/** "0.5 x 0.5 x 2 mm", or each with its unit where these differ.
+ * @param {import('./types').Info} info */
+function distances({spacing, axes}) {
+    const texts = spacing.map(x => `${+x.toPrecision(4)}`), units = axes.map(([unit]) => unit);
+    return new Set(units).size === 1 ? `${texts.join(' x ')} ${units[0]}`.trim()
+        : texts.map((text, i) => `${text} ${units[i]}`.trim()).join(' x ');
+}
+
 /** What is said of options, in words of the page: "--channel N" is its section Channels.
  * @param {string} line */
 const plain = line => line.replace(/--([a-z][a-z-]*)( [A-Z]+\b)?/g, (all, name) => SECTIONS[name] ?? name);
@@ -68,7 +77,8 @@ const plain = line => line.replace(/--([a-z][a-z-]*)( [A-Z]+\b)?/g, (all, name) 
 /** @param {string} name
  * @param {...(Node|string)} children */
 function open(name, ...children) {
-    dialog.replaceChildren(make('h2', {textContent: name}), ...children,
+    // A long text is read from its beginning.
+    dialog.replaceChildren(make('h2', {textContent: name, tabIndex: -1, autofocus: true}), ...children,
         make('p', {}, button('Close', 'Close', () => dialog.close())));
     if (!dialog.open)
         dialog.showModal();
@@ -184,7 +194,7 @@ const actions = {
     },
     undo: () => store.undo() || say('Nothing to undo'),
     redo: () => store.redo() || say('Nothing to redo'),
-    help: () => open('Mouse, fingers and keys', ...help(store)),
+    help: () => open('Help', ...help(store)),
 };
 
 // --- the picture ------------------------------------------------------------------
@@ -336,7 +346,8 @@ const pointer = new Pointer(canvas, store, (x, y) => engine.ask('depth', {x, y, 
 const measure = new Measure(store, pointer, slices, views, () => actions.measure(measure.tool));
 const panel = new Panel(store, actions, slices, measure);
 const overlay = new Overlay(store, pointer, slices);
-picture.append(measure.canvas, ...overlay.elements);
+const hints = new Hints(store);
+picture.append(measure.canvas, ...overlay.elements, hints.element);
 let first = true, fresh = true; // the first state of all, and of a connection
 /** What the page began with.
  * @type {Keys} */
@@ -400,8 +411,7 @@ engine.on('info', info => {
     store.info = info;
     document.title = `${info.name} - snowglass`;
     title.textContent = `${info.name}  ${info.dims.join(' x ')}${info.live ? '' : ` ${info.type}`}, ` +
-        `${info.spacing.map(x => +x.toPrecision(4)).join(' x ')} ` +
-        [...new Set(info.axes.map(axis => axis[0]))].join(', ');
+        distances(info);
     if (part)
         panel.update();
     else
@@ -423,6 +433,8 @@ engine.on('state', ({touched}) => {
     const link = given.get('recipe');
     if (begins && link)
         openLink(link);
+    else if (begins && touched === false && !store.info?.live)
+        hints.show(0); // nobody has used this viewer yet
 });
 store.onChange(() => {
     panel.update();
@@ -443,7 +455,7 @@ const chooser = button('Open', 'Open a recipe, or drop it on the page', () => {
 const commanded = button('Command', 'Copy the command that makes this picture (c)', actions.command);
 const filmed = button('Movie', 'Copy the command that makes a movie of a turn (v)',
     actions.movie);
-buttons.append(make('label', {}, 'Drag ', tool), sliced,
+buttons.append(tip(make('label', {}, 'Drag ', tool), 'What a drag, and arrow keys, do (d: the next)'), sliced,
     commanded, filmed,
     button('Link', 'Copy a link to this state', actions.link),
     button('Recipe', 'Save the recipe of this state', actions.file),
@@ -454,7 +466,7 @@ for (const each of buttons.querySelectorAll('button'))
 document.getElementById('viewer')?.append(
     make('section', {className: 'stage', 'aria-label': 'Picture'},
         make('div', {className: 'top'}, make('h1', {textContent: 'snowglass'}), title, level, chooser,
-            button('Help', 'Mouse, fingers and keys (?)', actions.help)),
+            button('Help', 'A short guide, and all keys (?)', actions.help)),
         views,
         make('div', {className: 'bottom'}, figures, buttons)),
     panel.element, dialog);

@@ -17,7 +17,8 @@ from volumes import each, nrrd, placed
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 WEB = os.path.abspath(sys.argv[3])
-PLAYWRIGHT = os.path.join(WEB, "node_modules", "playwright-core", "index.mjs")
+PLAYWRIGHT, AXE = (os.path.join(WEB, "node_modules", *path) for path in (
+    ("playwright-core", "index.mjs"), ("axe-core", "axe.min.js")))
 
 
 def find(*names):
@@ -29,8 +30,8 @@ if not node:
     skip("there is no node")
 if not chromium:
     skip("there is no chromium")
-if not os.path.exists(PLAYWRIGHT):
-    skip("there is no playwright-core: ./dev test installs it where npm is")
+if not os.path.exists(PLAYWRIGHT) or not os.path.exists(AXE):
+    skip("there is no playwright-core or axe-core: ./dev test installs them where npm is")
 
 shots = os.path.join(WEB, "pictures")
 os.makedirs(shots, exist_ok=True)

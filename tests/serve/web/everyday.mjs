@@ -35,6 +35,7 @@ export async function steps(tools) {
     const its = (...rest_) => sets(tools, page, ...rest_);
     await openAll(page);
     await rest(page);
+    await computed(tools, page);
     await time(tools, page, its);
     await looks(tools, page, its);
     await light(tools, page, its);
@@ -54,6 +55,39 @@ export async function steps(tools) {
     await its('a crop that is empty is not', () => enter(page, 'crop y, first voxel', '40'),
         {crop: [[20, 48], [0, 40], [0, 30]]});
     await page.context().close();
+}
+
+/** What the viewer adds to a look of which a part was set comes back to it by none of the
+ * ways on which a page sends much of its state. */
+async function computed({check, rest}, page) {
+    await page.evaluate(() => {
+        const {engine, store} = window.snowglass, say = engine.say.bind(engine);
+        window.back = [];
+        engine.say = message => {
+            if (message.t === 'set')
+                window.back.push(...Object.keys(message.keys).filter(key => message.keys[key] !== null && key in window.was));
+            window.was = {...store.computed};
+            say(message);
+        };
+        window.was = {};
+    });
+    const added = () => page.evaluate(() => Object.keys(window.snowglass.store.computed).sort().join());
+    const opaque = part => page.evaluate(share => {
+        const {store} = window.snowglass;
+        store.set({opacity: store.look.opacity.map(([value, opacity]) => [value, share * opacity])});
+    }, part);
+    await opaque(0.5);
+    await page.waitForFunction(() => window.snowglass.store.computed.range);
+    check('a part of a look that is set leaves the others', /range,shade/.test(await added()), await added());
+    await rest(page);
+    await opaque(0.8);
+    await press(page, 'z', 'Z', 'm', 'z', 'z');
+    await page.getByRole('button', {name: /All as it was/}).click();
+    await rest(page);
+    await page.waitForFunction(() => !Object.keys(window.snowglass.store.computed).length);
+    check('and these are never sent back', await page.evaluate(() => window.back.join()) === '',
+        await page.evaluate(() => window.back.join()));
+    await page.evaluate(() => delete window.snowglass.engine.say);
 }
 
 async function time({check, rest}, page, its) {
@@ -87,15 +121,15 @@ async function time({check, rest}, page, its) {
 
 async function looks({check}, page, its) {
     const drawn = () => page.evaluate(() => document.querySelector('.editor').toDataURL());
-    const bars = await drawn(), log = page.getByRole('button', {name: /^Logarithmic counts/}).first();
+    const bars = await drawn(), log = page.getByRole('button', {name: /Logarithmic counts/}).first();
     await log.click();
     check('counts are not logarithmic', await drawn() !== bars &&
         await log.getAttribute('aria-pressed') === 'false');
     await log.click();
     check('and are again', await drawn() === bars && await log.getAttribute('aria-pressed') === 'true');
-    await its('the range is that of percentiles', () => page.getByRole('button', {name: /^Range of the 1st/})
+    await its('the range is that of percentiles', () => page.getByRole('button', {name: /Range of the 1st/})
         .click(), {range: ['p1', 'p99']});
-    await its('or the usual one', () => page.getByRole('button', {name: /^Opacity of the preset/}).first()
+    await its('or the usual one', () => page.getByRole('button', {name: /Opacity of the preset/}).first()
         .click(), {range: undefined});
     const part = async () => parseFloat(await page.getByText(/not visible; method/).textContent());
     const before = await part();
@@ -240,7 +274,7 @@ async function planes({check, keys, rest, wheel}, page, its) {
     const last = page.getByLabel('clip bottom - top, highest').and(page.locator('input'));
     check('no end makes a seventh', await last.isDisabled() && await grips.count() === 6,
         await grips.count());
-    check('nor a tilted one', await page.getByRole('button', {name: /^A plane that faces/}).isDisabled());
+    check('nor a tilted one', await page.getByRole('button', {name: /A plane that faces/}).isDisabled());
     await its('without the tilted one', () => page.getByRole('button', {name: 'Remove tilted plane 1'}).click(),
         {clip: five});
     await its('the end can cut', () => last.fill('100'), {clip: [...five, [0, 0, 1, 100.24]]});

@@ -15,6 +15,7 @@ import {measures} from './measures.mjs';
 
 const [playwright, chromium, folder, ...parts] = process.argv.slice(2);
 const {chromium: browsers} = await import(playwright);
+const axe = readFileSync(playwright.replace(/playwright-core.*/, 'axe-core/axe.min.js'), 'utf8');
 const PATIENCE = 600000; // ms: other programs may have the machine
 const LANES = 3;
 const running = new AsyncLocalStorage();
@@ -254,10 +255,19 @@ async function keyboard(page) {
     await page.keyboard.press('Escape');
     await press(page, 'm', '3', 'ArrowLeft', 'ArrowRight');
     await is('single letters can be switched off', `0 ${mode} false`);
-    await page.getByRole('button', {name: 'Mouse, fingers and keys (?)'}).click();
+    await page.getByRole('button', {name: 'A short guide, and all keys (?)'}).click();
     await page.getByLabel('single letters, digits and signs act').check();
     await page.keyboard.press('Escape');
     await header.click();
+}
+
+/** What axe-core finds against the guidelines for accessible pages (WCAG). */
+async function judged(page, what) {
+    await page.waitForTimeout(100);
+    await page.evaluate(axe);
+    const found = await page.evaluate(async () => (await window.axe.run()).violations.map(
+        ({id, nodes}) => `${id}: ${nodes.map(({html}) => html.slice(0, 99)).join(' ')}`));
+    check(`axe finds nothing, ${what}`, found.length === 0, found.join('; '));
 }
 
 /** What is written can be read, spoken and seen. */
@@ -284,8 +294,20 @@ async function readable() {
         });
         check('bars of the histogram stand out', bars >= 3, bars);
         await shot(page, `magnified_${colorScheme}`);
+        await judged(page, colorScheme);
+        const sections = on => page.evaluate(opens => document.querySelectorAll('details').forEach(each => {
+            each.open = opens;
+        }), on);
+        await sections(true);
+        await judged(page, 'all sections');
+        await sections(false);
+        await page.keyboard.press('?');
+        await judged(page, 'Help');
+        await shot(page, `help_${colorScheme}`);
+        await page.keyboard.press('Escape');
         await page.keyboard.press('x');
         await slicesRest(page);
+        await judged(page, 'slices');
         const ground = await page.evaluate(() => getComputedStyle(document.querySelector('figcaption')).backgroundColor);
         check('captions have a ground', /rgba\(0, 0, 0, 0\.8\)/.test(ground), ground);
         await shot(page, `magnified_slices_${colorScheme}`);
@@ -355,7 +377,7 @@ async function editor(page) {
     await shot(page, 'gradient');
     await page.getByRole('button', {name: 'The gradient does not matter'}).click();
     await page.locator('summary', {hasText: 'Opacity by gradient'}).click();
-    await settle(page, page.getByRole('button', {name: /^Opacity of the preset/}).click());
+    await settle(page, page.getByRole('button', {name: /Opacity of the preset/}).click());
     check('and all is automatic again', !(await keys(page)).opacity);
 }
 
@@ -372,7 +394,7 @@ async function controls(page) {
     now = await keys(page);
     check('mode iso has a value', now.mode === 'iso' && Number.isFinite(now.iso), now.iso);
     await page.getByLabel('Mode', {exact: true}).selectOption('over');
-    await page.getByRole('button', {name: /^Opacity of the preset/}).click();
+    await page.getByRole('button', {name: /Opacity of the preset/}).click();
     await page.locator('summary', {hasText: 'Clip'}).click();
     await settle(page, page.getByLabel(/clip .*highest/).and(page.locator('input')).first().fill('0'));
     check('a clip plane is set', (await keys(page)).clip?.length === 1,
@@ -586,7 +608,7 @@ async function awayAndBack(page) {
 
 /** Handles on the picture, a point to turn around, the light. */
 async function handles(page) {
-    await page.getByRole('button', {name: /^All as it was/}).click();
+    await page.getByRole('button', {name: /All as it was/}).click();
     await page.locator('details', {has: page.locator('summary', {hasText: 'Clip'})})
         .evaluate(group => { group.open = false; });
     await press(page, 'k');
@@ -607,7 +629,7 @@ async function handles(page) {
     await hold(page, [after.x + after.width / 2, after.y + after.height / 2], [x, y],
         {button: 'right', steps: 4});
     check('but not by the right button', String((await keys(page)).clip) === String(clip));
-    await settle(page, page.getByRole('button', {name: /^A plane that faces the viewer/}).click());
+    await settle(page, page.getByRole('button', {name: /A plane that faces the viewer/}).click());
     check('a plane faces the viewer', await grips.count() === 7 && (await keys(page)).clip.length === 2);
     await drag(page, 90, 40);
     await shot(page, 'handles');
@@ -716,7 +738,7 @@ async function touch() {
 }
 
 async function schemes(page0) {
-    await page0.getByRole('button', {name: /^All as it was/}).click();
+    await page0.getByRole('button', {name: /All as it was/}).click();
     await rest(page0);
     check('all can be reset', (await keys(page0)).mode === 'over');
     const page = await open({viewport: {width: 500, height: 400}, deviceScaleFactor: 2, colorScheme: 'dark'});
@@ -944,7 +966,7 @@ async function film() {
     await hand.press(one);
     await slicesRest(page);
     await keepBytes(page, 'slice.png', 'page.slices.panes[0].file');
-    await keep('slice', page.getByRole('button', {name: /^The command that makes the slice/}).first());
+    await keep('slice', page.getByRole('button', {name: /The command that makes the slice/}).first());
     await step('10_slice_command');
     await hand.key('Escape');
     await hand.press(more);
@@ -954,7 +976,7 @@ async function film() {
     const coming = page.waitForEvent('download');
     await hand.press(page.getByRole('button', {name: /^Save the picture/}));
     await (await coming).saveAs(file('rest.png'));
-    await hand.press(page.getByRole('button', {name: /^All as it was/}));
+    await hand.press(page.getByRole('button', {name: /All as it was/}));
     await seen('12_reset');
     await page.context().close();
 }
@@ -1110,7 +1132,7 @@ async function recipes() {
     const coming = page.waitForEvent('download');
     await page.getByRole('button', {name: /^Save the recipe/}).click();
     const text = readFileSync(await (await coming).path(), 'utf8');
-    await settle(page, page.getByRole('button', {name: /^All as it was/}).click());
+    await settle(page, page.getByRole('button', {name: /All as it was/}).click());
     const before = await keys(page);
     await choose(page, 'state.json', text);
     await page.waitForFunction(() => window.snowglass.recipe.keys.azimuth === 30);
@@ -1182,7 +1204,7 @@ async function labelled() {
     const painted = await bytesOf(page, 'page.page.rest');
     await settle(page, page.getByLabel('Colours', {exact: true}).first().selectOption('viridis'));
     check('a map is of values', await page.evaluate(() => window.snowglass.page.look.labels.length === 0));
-    await settle(page, page.getByRole('button', {name: /^All as it was/}).click());
+    await settle(page, page.getByRole('button', {name: /All as it was/}).click());
     check('their own colours come back', !(await keys(page)).colormap &&
         await bytesOf(page, 'page.page.rest') !== painted);
     await page.context().close();
@@ -1227,7 +1249,7 @@ async function fused() {
     check('colours of a narrow range are apart', near === '100000,100000.25,100000.5,100000.75,100001',
         near);
     await page.locator('details', {has: page.locator('summary', {hasText: 'Overlay'})})
-        .getByRole('button', {name: /^Opacity of the preset/}).click();
+        .getByRole('button', {name: /Opacity of the preset/}).click();
     await rest(page);
     check('and loses', (await keys(page))['overlay-look'] === 'viridis');
     await page.context().close();
