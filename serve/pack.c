@@ -32,6 +32,7 @@ struct packer {
     pthread_cond_t changed;
     picture *waiting, *done;
     bool ending, packing, drafting; /* the latter: a draft is packed */
+    double pixel_seconds;           /* of the last one */
     outbox *box;
     snow_context *context; /* the thread's own */
 };
@@ -245,6 +246,10 @@ static void pack(packer *p, const picture *made) {
             MESSAGE_THIN_PICTURE);
 }
 
+static double pixels_of(const snow_image *image) {
+    return (double)snow_image_width(image) * snow_image_height(image);
+}
+
 static void *run(void *user) {
     packer *p = user;
     pthread_mutex_lock(&p->lock);
@@ -258,8 +263,11 @@ static void *run(void *user) {
         p->packing = true;
         p->drafting = next->level == 0;
         pthread_mutex_unlock(&p->lock);
+        double begin = seconds();
         pack(p, next);
         pthread_mutex_lock(&p->lock);
+        if (p->drafting)
+            p->pixel_seconds = (seconds() - begin) / pixels_of(next->image);
         p->packing = p->drafting = false;
         next->next = p->done;
         p->done = next;
@@ -315,6 +323,13 @@ void packer_wait_for_draft(packer *p) {
     while (p->drafting || (p->waiting && p->waiting->level == 0))
         pthread_cond_wait(&p->changed, &p->lock);
     pthread_mutex_unlock(&p->lock);
+}
+
+double packer_pixel_seconds(packer *p) {
+    pthread_mutex_lock(&p->lock);
+    double seconds_each = p->pixel_seconds;
+    pthread_mutex_unlock(&p->lock);
+    return seconds_each;
 }
 
 picture *packer_wait(packer *p) {

@@ -101,8 +101,10 @@ static int draw(renderer *r, int level) {
     if (done != CONTINUE)
         return done;
     double took = seconds_now() - begin + r->drawing->earlier_seconds;
+    double packed = packer_pixel_seconds(r->pack) * snow_image_width(image) *
+                    snow_image_height(image);
     r->shrink =
-        draft_follow(&r->times, r->shrink, level, took,
+        draft_follow(&r->times, r->shrink, level, took + packed,
                      snow_frame_stats(r->drawing->state.frame)->encoded);
     if (level > 0)
         tell_empty(r, image);

@@ -25,6 +25,12 @@ void packer_wait_for_draft(packer *p) {
     (void)p;
 }
 
+/* Nothing is packed. */
+double packer_pixel_seconds(packer *p) {
+    (void)p;
+    return 0;
+}
+
 picture *packer_wait(packer *p) {
     (void)p;
     return NULL;

@@ -59,6 +59,22 @@ static void sizes_do_not_alternate(void **state) {
         }
 }
 
+/* Of 3840 x 2160 pixels packing takes twice as long as drawing, which alone would
+ * have kept them. */
+static void packing_counts(void **state) {
+    (void)state;
+    const double drawn = 0.02, packed = 0.04;
+    draft_times times = {.count = 0};
+    int shrink = 0;
+    for (int i = 0; i < 40; i++)
+        shrink = draft_follow(&times, shrink, 0,
+                              seconds_at(drawn, drawn / 4, shrink) +
+                                  seconds_at(packed, 0, shrink),
+                              false);
+    assert_int_equal(shrink, 1);
+    assert_int_equal(draft_shrink(0, 0, drawn, false), 0);
+}
+
 /* Of a machine that does other work beside, by which every third draft or so
  * takes several times as long as it would alone. */
 static void sizes_do_not_pulse_on_a_busy_machine(void **state) {
@@ -90,6 +106,7 @@ int main(void) {
         cmocka_unit_test(one_that_encodes_does_not_count),
         cmocka_unit_test(pictures_at_rest_count_where_they_are_quick),
         cmocka_unit_test(sizes_do_not_alternate),
+        cmocka_unit_test(packing_counts),
         cmocka_unit_test(sizes_do_not_pulse_on_a_busy_machine),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
