@@ -164,6 +164,11 @@ static const char *read_ack(message *m) {
     return read_number(m->tree, "n", &m->n) ? NULL : "ack: needs a number n";
 }
 
+static const char *read_part(message *m) {
+    (void)m;
+    return NULL;
+}
+
 static const char *read_ask(message *m) {
     m->what = json_string_value(json_object_get(m->tree, "what"));
     return m->what ? NULL : "ask: needs what is asked for";
@@ -178,6 +183,7 @@ static const char *read_kind(message *m) {
                 {"set", MESSAGE_SET, read_set},
                 {"moving", MESSAGE_MOVING, read_moving},
                 {"ack", MESSAGE_ACK, read_ack},
+                {"part", MESSAGE_PART, read_part},
                 {"ask", MESSAGE_ASK, read_ask}};
     const char *name = json_string_value(json_object_get(m->tree, "t"));
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -238,6 +244,11 @@ uint64_t frame_shape(const unsigned char head[32]) {
 
 void frame_head_set_n(unsigned char head[32], uint32_t n) {
     put_u32(head + 4, n);
+}
+
+void frame_head_set_part(unsigned char head[32], int part, uint32_t all) {
+    head[11] = (unsigned char)part;
+    put_u32(head + 12, all);
 }
 
 void state_text_set_step(unsigned char *text, uint32_t step) {

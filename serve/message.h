@@ -5,6 +5,7 @@
  *   {"t": "set", "step": 17, "keys": {"azimuth": 30, "preset": null}}
  *   {"t": "moving", "on": true}
  *   {"t": "ack", "n": 17}
+ *   {"t": "part"}
  *   {"t": "ask", "what": "histogram", ...}
  *
  * Nothing here touches a socket or a file. */
@@ -25,6 +26,7 @@ typedef enum message_kind {
     MESSAGE_SET,
     MESSAGE_MOVING,
     MESSAGE_ACK,
+    MESSAGE_PART, /* of a picture: it has come */
     MESSAGE_ASK,
     MESSAGE_NONE /* nothing is done, and `left_out` says why */
 } message_kind;
@@ -71,8 +73,12 @@ typedef enum frame_kind {
 
 /* What stands before a picture's bytes, little endian:
  *
- *    0 "SNW1" | 4 n | 8 level, kind, pane, flags | 12 zero
- *   16 width  | 20 height | 24 microseconds of rendering | 28 of packing */
+ *    0 "SNW1" | 4 n | 8 level, kind, pane, part | 12 bytes of all parts
+ *   16 width  | 20 height | 24 microseconds of rendering | 28 of packing
+ *
+ * Most pictures are whole: 0 is their part.  On a thin link the one at rest comes
+ * in several, of which the first is FRAME_FIRST and the others FRAME_NEXT, each
+ * with this head; a picture that follows ends it before its end. */
 typedef struct frame_head {
     uint32_t n;
     int level, kind, pane;
@@ -80,6 +86,10 @@ typedef struct frame_head {
 } frame_head;
 
 void frame_head_write(const frame_head *head, unsigned char out[32]);
+
+#define FRAME_FIRST 1
+#define FRAME_NEXT 2
+void frame_head_set_part(unsigned char head[32], int part, uint32_t all);
 
 /* The width and height of a picture, in one number. */
 uint64_t frame_shape(const unsigned char head[32]);

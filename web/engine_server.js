@@ -6,6 +6,7 @@ import {merged} from './store.js';
 
 const MAGIC = 0x31574e53;
 const TYPES = ['', 'image/jpeg', 'image/png', 'image/webp'];
+const FIRST = 1; // of the parts of a picture
 const FRAME = 12; // ms, less than that of a screen
 const FATAL = [4400, 4401, 4429]; // a message that it does not take, the secret, too many
 
@@ -31,6 +32,8 @@ export class ServerEngine {
         this.unheard = new Map(); // changes that no state or picture has yet
         /** @type {Changes|null} */
         this.waiting = null; // changes that are not sent yet
+        /** @type {Uint8Array[]} */
+        this.parts = []; // of the picture that comes in such
         this.painting = Promise.resolve();
         this.wait = 500;
         this.flushed = 0;
@@ -65,6 +68,7 @@ export class ServerEngine {
             delete this.lost.size;
             this.unheard.clear();
             this.waiting = null;
+            this.parts = [];
             this.say({t: 'hello', token: this.token, wants: ['jpeg', 'png', 'webp']});
             this.tell('open');
         };
@@ -129,10 +133,35 @@ export class ServerEngine {
         if (typeof data === 'string') {
             const message = JSON.parse(data);
             this.tell(message.t, message.t === 'state' ? this.renewed(message) : message);
-        } else {
-            this.painting = this.painting.then(() => this.paint(data)).catch(
-                error => this.tell('said', {text: `A picture cannot be shown: ${error.message}`}));
+            return;
         }
+        const whole = this.whole(data);
+        if (whole)
+            this.painting = this.painting.then(() => this.paint(whole)).catch(
+                error => this.tell('said', {text: `A picture cannot be shown: ${error.message}`}));
+    }
+
+    /** A picture, or null while parts of it are missing.  On a thin link another one may
+     * come before them, as the server drops them then.
+     * @param {ArrayBuffer} data */
+    whole(data) {
+        const {11: part, 10: pane} = new Uint8Array(data, 0, 12), [all] = new Uint32Array(data, 12, 1);
+        if (!part) {
+            this.parts = pane ? this.parts : [];
+            return data;
+        }
+        this.say({t: 'part'});
+        this.parts = part === FIRST ? [new Uint8Array(data)] : [...this.parts, new Uint8Array(data, 32)];
+        const bytes = this.parts.reduce((sum, each) => sum + each.byteLength, -32);
+        if (bytes < all)
+            return null;
+        const made = new Uint8Array(32 + all);
+        let at = 0;
+        for (const each of this.parts.splice(0)) {
+            made.set(each, at);
+            at += each.byteLength;
+        }
+        return made.buffer;
     }
 
     /** What the page has changed since stays on top of a state.

@@ -33,6 +33,7 @@ export type Said =
     | {t: 'set', step: number, keys: Changes}
     | {t: 'moving', on: boolean}
     | {t: 'ack', n: number}
+    | {t: 'part'}
     | {t: 'ask', what: string, [more: string]: unknown};
 
 /** The state.  `step` is the newest one of this page that it has; `keys` are those that

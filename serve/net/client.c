@@ -51,20 +51,35 @@ static void forget_pictures(client *c, outbox *box) {
     c->count = left;
 }
 
+static bool is_final(const outgoing *p) {
+    return p->topic == MESSAGE_PICTURE && p->bytes[8] == 2;
+}
+
+/* The rest of a picture that goes in parts, as another one follows. */
+static void drop_parts(client *c, outbox *box) {
+    if (!c->sending || !c->in_parts)
+        return;
+    outgoing_release(box, c->sending);
+    c->sending = NULL;
+    c->under_way--; /* the newest, which the page never paints */
+}
+
 uint64_t client_shape(const client *c) {
     return (uint64_t)c->size.width | (uint64_t)c->size.height << 32;
 }
 
 void client_queue(client *c, outbox *box, outgoing *p) {
     /* The picture at rest, whose head says so, is one for all links. */
-    bool final = p->topic == MESSAGE_PICTURE && p->bytes[8] == 2;
+    bool final = is_final(p);
     if (is_picture(p) && !final &&
         c->thin != (p->topic == MESSAGE_THIN_PICTURE))
         return;
     if (final && c->served && p->shape && p->shape != client_shape(c))
         return; /* that of its own size comes too */
-    if (is_picture(p))
+    if (is_picture(p)) {
         forget_pictures(c, box);
+        drop_parts(c, box);
+    }
     for (int i = 0; i < c->count && p->topic != MESSAGE_PLAIN; i++) {
         if (c->queue[i]->topic != p->topic)
             continue;
@@ -149,7 +164,9 @@ static int next_of(const client *c) {
 }
 
 bool client_has_more(const client *c) {
-    return c->sending || next_of(c) >= 0;
+    if (c->sending)
+        return !c->in_parts || c->parts < CLIENT_PARTS_MOST;
+    return next_of(c) >= 0;
 }
 
 static void begin(client *c) {
@@ -161,8 +178,38 @@ static void begin(client *c) {
     memmove(c->queue + index, c->queue + index + 1,
             (size_t)(c->count - index - 1) * sizeof *c->queue);
     c->count--;
+    c->in_parts = c->thin && is_final(c->sending) &&
+                  c->sending->length > 2 * CLIENT_PART_BYTES;
+    if (c->in_parts)
+        c->sent = FRAME_HEAD_BYTES;
     if (is_picture(c->sending))
         note_sent(c, c->sending);
+}
+
+void client_note_part(client *c) {
+    if (c->parts > 0)
+        c->parts--;
+}
+
+/* A message with the head and some bytes of the picture. */
+static bool send_part(client *c) {
+    static unsigned char
+        scratch[LWS_PRE + FRAME_HEAD_BYTES + CLIENT_PART_BYTES];
+    unsigned char *head = scratch + LWS_PRE;
+    const outgoing *p = c->sending;
+    const bool first = c->sent == FRAME_HEAD_BYTES;
+    size_t length = p->length - c->sent;
+    if (length > CLIENT_PART_BYTES)
+        length = CLIENT_PART_BYTES;
+    memcpy(head, p->bytes, FRAME_HEAD_BYTES);
+    frame_head_set_n(head, set_log_n(&c->sets, p->revision));
+    frame_head_set_part(head, first ? FRAME_FIRST : FRAME_NEXT,
+                        (uint32_t)(p->length - FRAME_HEAD_BYTES));
+    memcpy(head + FRAME_HEAD_BYTES, p->bytes + c->sent, length);
+    c->sent += length;
+    c->parts++;
+    return lws_write(c->wsi, head, FRAME_HEAD_BYTES + length,
+                     LWS_WRITE_BINARY) >= 0;
 }
 
 /* lws writes into the bytes before a piece, and others read the message: so it
@@ -192,9 +239,9 @@ static bool send_piece(client *c) {
 bool client_send(client *c, outbox *box) {
     if (!c->sending)
         begin(c);
-    if (!c->sending)
+    if (!c->sending || (c->in_parts && c->parts >= CLIENT_PARTS_MOST))
         return true;
-    bool good = send_piece(c);
+    bool good = c->in_parts ? send_part(c) : send_piece(c);
     if (c->sent == c->sending->length) {
         outgoing_release(box, c->sending);
         c->sending = NULL;

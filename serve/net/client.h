@@ -18,6 +18,11 @@
 /* Bytes of a piece: what a socket takes at once. */
 #define CLIENT_PIECE_BYTES 65536
 
+/* On a thin link the picture at rest goes in messages of so many bytes, of which
+ * few are under way: what has not gone can be dropped when another follows. */
+#define CLIENT_PART_BYTES 16384
+#define CLIENT_PARTS_MOST 3
+
 /* A picture that is under way. */
 typedef struct sent_picture {
     lws_usec_t at;
@@ -40,6 +45,8 @@ typedef struct client {
     int count;
     outgoing *sending; /* and of it: */
     size_t sent;
+    bool in_parts;
+    int parts;      /* that the page has not acknowledged */
     bool thin;      /* the link, since pictures wait for it: */
     double blocked; /* the share of them, of late */
     int under_way;  /* pictures that were sent and not acknowledged: */
@@ -61,6 +68,9 @@ void client_queue(client *c, outbox *box, outgoing *p);
 /* A picture was painted.  Whether pictures are to be packed in another way
  * for this page from now on. */
 bool client_acknowledge(client *c);
+
+/* A part has come. */
+void client_note_part(client *c);
 
 /* The shape of the pictures at rest of its size (message.h). */
 uint64_t client_shape(const client *c);

@@ -217,6 +217,9 @@ static int take(listener *l, client *c, message *m) {
         if (client_acknowledge(c))
             count_links(l);
         break;
+    case MESSAGE_PART:
+        client_note_part(c);
+        break;
     case MESSAGE_ASK:
         if (!state_ask(l->state, c->id, sizes_ask(c, m->tree))) {
             answer_none(l->box, c->id, m->tree);

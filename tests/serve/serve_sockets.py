@@ -926,11 +926,36 @@ RECIPES = [
 ]
 
 
+def drop_rest(page, link):
+    """The picture at rest comes in parts, and a turn that begins meanwhile ends it."""
+    page.say({"t": "moving", "on": False})
+    page.set(5000, azimuth=11.5)
+    check("the picture at rest comes through a thin link",
+          page.receive_picture(2, 5000) is not None)
+    link.rate = 1e6 / 8  # it would take seconds
+    page.set(5001, azimuth=12.5)
+
+    def turn():
+        page.say({"t": "moving", "on": True})
+        page.set(5002, azimuth=13.5)
+
+    page.at_part, seen = turn, []
+    while not seen or seen[-1] != (0, 5002):
+        what, message = page.hear()
+        if what == "closed":
+            break
+        if what == "picture":
+            page.say({"t": "ack", "n": 0})
+            seen.append((message[8], *struct.unpack("<I", message[4:8])))
+    check("a part of it had come", page.part, seen)
+    check("and the rest of it does not", (2, 5001) not in seen and seen[-1] == (0, 5002), seen)
+
+
 def thin_links():
     """5 Mbit/s and 80 ms: what a page at home gets of 1024x1024 pixels."""
     server = Server("phantom:engine", "--dims", "64x64x64", "--preset", "ct-bone")
     link = ThinLink(server, 5e6, 0.04)
-    rate, kinds, sizes = drag_over(server, link, 1024, 4)
+    rate, kinds, sizes = drag_over(server, link, 1024, 4, lambda page: drop_rest(page, link))
     print(f"       5 Mbit/s, 80 ms: {rate:.1f} pictures a second, of "
           f"{sum(sizes) / len(sizes) / 1000:.0f} kB, "
           f"{kinds.count(3)} of {len(kinds)} as WebP")

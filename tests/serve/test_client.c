@@ -229,6 +229,49 @@ static void two_pictures_are_under_way(void **state) {
     outbox_free(box);
 }
 
+/* On a thin link: a few at a time, and the rest not at all where another picture
+ * follows. */
+static void the_picture_at_rest_goes_in_parts_that_can_be_dropped(
+    void **state) {
+    (void)state;
+    const size_t bytes = 5 * CLIENT_PART_BYTES + 100;
+    outbox *box = outbox_new(wake_nobody, NULL);
+    client c = {.id = 1, .webp = true, .thin = true, .blocked = 1};
+    queue_long(&c, box, MESSAGE_PICTURE, 2, FRAME_HEAD_BYTES + bytes);
+    int before = written.count;
+    send_all(&c, box);
+    assert_int_equal(written.count, before + CLIENT_PARTS_MOST);
+    assert_int_equal(written.how, LWS_WRITE_BINARY);
+    assert_int_equal(written.head[11], FRAME_NEXT);
+    assert_int_equal(written.head[12] | written.head[13] << 8 |
+                         written.head[14] << 16,
+                     bytes);
+    queue(&c, box, MESSAGE_STATE, 0);
+    assert_false(client_has_more(&c));
+    for (int i = CLIENT_PARTS_MOST; i < 6; i++) {
+        client_note_part(&c);
+        send_all(&c, box);
+    }
+    assert_int_equal(written.count, before + 6 + 1); /* the state behind it */
+    assert_int_equal(c.under_way, 1);
+    client_acknowledge(&c);
+    for (int i = 0; i < 9; i++)
+        client_note_part(&c);
+
+    queue_long(&c, box, MESSAGE_PICTURE, 2, FRAME_HEAD_BYTES + bytes);
+    before = written.count;
+    assert_true(client_send(&c, box));
+    assert_int_equal(written.head[11], FRAME_FIRST);
+    queue(&c, box, MESSAGE_THIN_PICTURE, 0);
+    send_all(&c, box);
+    assert_int_equal(written.count, before + 2);
+    assert_int_equal(written.head[11], 0);
+    assert_int_equal(c.under_way, 1);
+    assert_false(client_has_more(&c));
+    client_free(&c, box);
+    outbox_free(box);
+}
+
 static void a_picture_goes_in_pieces_with_the_own_n(void **state) {
     (void)state;
     outbox *box = outbox_new(wake_nobody, NULL);
@@ -320,6 +363,8 @@ int main(void) {
         cmocka_unit_test(texts_with_a_topic_replace_in_place),
         cmocka_unit_test(n_is_the_newest_that_a_revision_has),
         cmocka_unit_test(two_pictures_are_under_way),
+        cmocka_unit_test(
+            the_picture_at_rest_goes_in_parts_that_can_be_dropped),
         cmocka_unit_test(a_picture_goes_in_pieces_with_the_own_n),
         cmocka_unit_test(a_link_is_thin_while_pictures_wait),
         cmocka_unit_test(too_much_that_waits_is_noted),

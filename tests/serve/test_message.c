@@ -38,6 +38,9 @@ static void messages_are_read(void **state) {
     m = read_good("{\"t\":\"ack\",\"n\":17,\"ms\":6}");
     assert_true(m.kind == MESSAGE_ACK && m.n == 17);
     message_free(&m);
+    m = read_good("{\"t\":\"part\"}");
+    assert_int_equal(m.kind, MESSAGE_PART);
+    message_free(&m);
     m = read_good("{\"t\":\"ask\",\"what\":\"histogram\"}");
     assert_int_equal(m.kind, MESSAGE_ASK);
     assert_string_equal(m.what, "histogram");

@@ -156,7 +156,7 @@ class ThinLink:
         while True:
             near, _ = self.door.accept()
             far = socket.create_connection(("127.0.0.1", self.port_of))
-            for a, b, rate in ((near, far, 1e9), (far, near, self.rate)):
+            for a, b, rate in ((near, far, lambda: 1e9), (far, near, lambda: self.rate)):
                 queue = collections.deque()
                 threading.Thread(target=self.read, args=(a, queue, rate),
                                  daemon=True).start()
@@ -170,7 +170,7 @@ class ThinLink:
                 got = source.recv(4096)
             except OSError:
                 got = b""
-            free = max(free, time.monotonic()) + len(got) / rate
+            free = max(free, time.monotonic()) + len(got) / rate()
             queue.append((free + self.delay, got))
             if not got:
                 return
@@ -201,7 +201,8 @@ class Page:
                  wants=HELLO, made=None):
         self.socket = made or (socket.create_connection(("127.0.0.1", port))
                                if port else server.connect())
-        self.bytes, self.server = b"", server
+        self.bytes, self.server, self.part = b"", server, b""
+        self.at_part = None  # what is done when a part has come
         key = base64.b64encode(os.urandom(16)).decode()
         origin = f"http://{server.host}" if origin is None else origin
         lines = [f"GET {path} HTTP/1.1", f"Host: {host or server.host}",
@@ -295,9 +296,24 @@ class Page:
                 continue
             kind = first & 15 or kind
             whole += body
+            if first & 128 and kind == 1:
+                return "text", json.loads(whole)
             if first & 128:
-                return ("text", json.loads(whole)) if kind == 1 else \
-                    ("picture", whole)
+                picture, whole, kind = self.joined(whole), b"", 0
+                if picture:
+                    return "picture", picture
+
+    def joined(self, message):
+        """A picture that comes in parts, which are acknowledged, once all are there."""
+        if not message[11]:
+            return message
+        self.say({"t": "part"})
+        self.part = message if message[11] == 1 else self.part + message[32:]
+        if self.at_part:
+            self.at_part, act = None, self.at_part
+            act()
+        whole = len(self.part) - 32 == int.from_bytes(message[12:16], "little")
+        return self.part if whole else None
 
     def receive_text(self, kind, seconds=PATIENCE):
         """The next text of a kind; None when the page was closed."""
@@ -446,8 +462,8 @@ def slice_is_of_command(page, name, *changes, **asked):
     return shown and shown[32:]
 
 
-def drag_over(server, link, side, seconds):
-    """Turns the view through a link: pictures a second after the first quarter,
+def drag_over(server, link, side, seconds, after=None):
+    """Turns the view through a link, then does something else: pictures a second after the first quarter,
     their kinds and sizes."""
     page = Page(server, port=link.port, wants=("jpeg", "png", "webp"))
     page.rest(1, size=[side, side])
@@ -468,5 +484,7 @@ def drag_over(server, link, side, seconds):
             page.say({"t": "ack", "n": 0})
             kinds.append(message[9])
             sizes.append(len(message))
+    if after:
+        after(page)
     page.close()
     return len(kinds[len(kinds) // 4:]) / (0.75 * seconds), kinds, sizes

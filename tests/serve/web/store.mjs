@@ -106,4 +106,31 @@ const points = [[10, 0], [90, 1]];
     store.set({'overlay-look': 'hot,2,12,2:0,12:0.5'});
     check('the overlay\'s range too', store.look.overlay, {low: 2, high: 12, labels: []});
 }
+{
+    const {engine, hear} = begin(), painted = [];
+    const {socket} = engine;
+    /** A message with a head, of a level, of a part, of so many bytes in all. */
+    const frame = (level, part, all, ...bytes) => {
+        const data = new Uint8Array([83, 78, 87, 49, 0, 0, 0, 0, level, 1, 0, part, ...new Array(20).fill(0), ...bytes]);
+        new DataView(data.buffer).setUint32(12, all, true);
+        socket.onmessage({data: data.buffer});
+    };
+    engine.paint = async data => painted.push([...new Uint8Array(data)].slice(32));
+    frame(2, 1, 5, 1, 2);
+    frame(2, 2, 5, 3, 4);
+    await engine.painting;
+    check('parts of a picture are no picture', painted, []);
+    frame(2, 2, 5, 5);
+    frame(0, 0, 0, 9);
+    await engine.painting;
+    check('until all are there', painted.splice(0), [[1, 2, 3, 4, 5], [9]]);
+    frame(2, 1, 5, 1, 2);
+    frame(0, 0, 0, 7);
+    frame(2, 1, 3, 4, 5);
+    frame(2, 2, 3, 6);
+    await engine.painting;
+    check('another one comes in the place of those that do not come', painted, [[7], [4, 5, 6]]);
+    check('each part is acknowledged', socket.sent.filter(({t}) => t === 'part').length, 6);
+    hear({t: 'said', text: ''});
+}
 process.exit(wrong ? 1 : 0);
