@@ -14,6 +14,14 @@
  * again with each piece of the file. */
 #define SNOW_XML_TAG_BYTES ((uint64_t)1 << 20)
 
+/* How a record names its `write`; the page without a server has none
+ * (wasm/CMakeLists.txt). */
+#ifdef SNOW_WRITES_PNG
+#define SNOW_WRITER(function) NULL
+#else
+#define SNOW_WRITER(function) function
+#endif
+
 /* A volume format.  `read` gets the source at its first byte (gzip undone) and
  * makes the volume; its messages need not name the file, and its options are
  * never NULL; `probe` says whether the first `size` bytes look like the

@@ -15,8 +15,11 @@
 
 /* The first is used for standard output. */
 static const snow_image_format *const formats[] = {
-    &snow_image_png,  &snow_image_npy,  &snow_image_pfm,  &snow_image_exr,
+    &snow_image_png,
+#ifndef SNOW_WRITES_PNG /* alone: wasm/CMakeLists.txt */
+    &snow_image_npy,  &snow_image_pfm,  &snow_image_exr,
     &snow_image_tiff, &snow_image_webp, &snow_image_jpeg,
+#endif
 };
 
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)

@@ -245,5 +245,5 @@ const snow_format snow_format_metaimage = {
     .crops = true,
     .channels = true,
     .read = read_metaimage,
-    .write = write_metaimage,
+    .write = SNOW_WRITER(write_metaimage),
 };

@@ -339,5 +339,5 @@ const snow_format snow_format_nifti = {
     .crops = true,
     .channels = true,
     .read = read_nifti,
-    .write = snow_nifti_write,
+    .write = SNOW_WRITER(snow_nifti_write),
 };

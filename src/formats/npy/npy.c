@@ -175,5 +175,5 @@ const snow_format snow_format_npy = {
     .crops = true,
     .channels = true,
     .read = read_npy,
-    .write = write_npy,
+    .write = SNOW_WRITER(write_npy),
 };

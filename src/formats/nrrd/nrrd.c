@@ -270,5 +270,5 @@ const snow_format snow_format_nrrd = {
     .crops = true,
     .channels = true,
     .read = read_nrrd,
-    .write = write_nrrd,
+    .write = SNOW_WRITER(write_nrrd),
 };

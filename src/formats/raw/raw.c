@@ -343,5 +343,5 @@ const snow_format snow_format_raw = {
     .suffixes = {".raw", ".raw.gz", ".bin", ".bin.gz"},
     .crops = true,
     .read = read_raw,
-    .write = write_raw,
+    .write = SNOW_WRITER(write_raw),
 };
