@@ -356,7 +356,7 @@ export class Measure {
         const {pointer} = this, {canvas} = pointer, [width, height] = pointer.box;
         const dx = x - canvas.clientWidth / 2, dy = y - canvas.clientHeight / 2, {keys} = this.store;
         const share = [dx / width + 0.5, dy / height + 0.5];
-        if (share.some(s => s < 0 || s > 1))
+        if (this.engine.flat || share.some(s => s < 0 || s > 1))
             return null;
         const {depth} = await this.probe({x: share[0], y: share[1], size: [canvas.width, canvas.height]});
         return typeof depth === 'number' ? unproject(keys, this.info, dx + pointer.shift, dy, depth, pointer.side) : null;
@@ -437,7 +437,8 @@ export class Measure {
             return;
         if (!place) {
             this.pending = null;
-            this.store.say('Nothing opaque is there to measure; modes over and iso have a surface.');
+            this.store.say(this.engine.flat ? 'Without a server measures are drawn on slices: x shows them.'
+                : 'Nothing opaque is there to measure; modes over and iso have a surface.');
         } else {
             pending.points[slot] = place;
             if (pending.points.length === NEEDS[tool] && pending.points.every(point => point.length))

@@ -99,6 +99,7 @@ export interface Engine {
     ask(what: string, more?: object): void;
     set(changes: Changes): void;
     moving(on: boolean): void;
+    flat?: boolean; // it finds no surface
 }
 
 /** What buttons and keys do, by name. */

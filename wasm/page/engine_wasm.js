@@ -9,6 +9,7 @@ const PATIENCE = 400; // ms
 export class ServerEngine extends SocketEngine {
     constructor() {
         super('');
+        this.flat = true; // it finds no surface: depths are of method raycast
         this.on('said', ({text}) => {
             this.last = text;
         });
