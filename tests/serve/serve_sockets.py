@@ -879,7 +879,8 @@ def streamed_slices():
         page.question("histogram", lo=0, hi=255)
         page.question("value", at=[1, 2, 3])
         while "value" not in heard:
-            heard += [message["t"] for what, message in [page.hear()] if what == "text"]
+            heard += [message["t"] for what, message in [page.hear()] if what == "text"
+                      and os.path.basename(big) not in json.dumps(message)]
         check("it has no histogram, in silence", "said" not in heard and
               "histogram" not in heard, heard)
         slice_is_of_command(page, "a slice of a volume in its file has its command's "
@@ -1000,6 +1001,8 @@ def quality_of_links():
     slow.say({"t": "moving", "on": True})  # so that no large picture at rest comes
     slow.set(1, size=[1024, 1024])
     got = drafts(slow, 20, 100)
+    if quality_of(got[-1]) > 50:  # beside other programs
+        got += drafts(slow, 40, 200)
     qualities = [quality_of(jpeg) for jpeg in got]
     print(f"       1 Mbit/s, 80 ms: quality {qualities[0]} to {qualities[-1]}, "
           f"{len(got[0]) / 1000:.0f} to {len(got[-1]) / 1000:.0f} kB")
