@@ -654,11 +654,11 @@ export class Measure {
         const wide = Math.max(...lines.map(line => g.measureText(line).width)), tall = 15 * lines.length;
         const xs = spots.map(([x]) => x), ys = spots.map(([, y]) => y);
         const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-        const mx = (x0 + x1) / 2, my = (y0 + y1) / 2, fit = EDGE + wide, rises = (spots[1][0] - spots[0][0]) * (spots[1][1] - spots[0][1]);
+        const mx = (x0 + x1) / 2, my = (y0 + y1) / 2, fit = (Math.abs(my - height / 2) < tall / 2 + 10 ? EDGE : 4) + wide, rises = (spots[1][0] - spots[0][0]) * (spots[1][1] - spots[0][1]);
         let [x, y] = item.kind === 'angle' ? [spots[1][0] + 8, spots[1][1] + 12]
             : item.kind === 'line' ? [mx + 8, my + (rises > 0 ? -10 : 10)]
             : x1 + 8 + fit < width ? [x1 + 8, my] : x0 - 8 - fit > 0 ? [x0 - wide - 8, my]
-            : [mx - wide / 2, y1 + 12 + tall < height - 56 ? y1 + 12 + tall / 2 : y0 - 12 - tall / 2];
+            : [mx - wide / 2, y1 + 12 + tall < height - 24 ? y1 + 12 + tall / 2 : y0 - 12 - tall / 2];
         x = Math.max(4, Math.min(width - wide - 4, x));
         y = Math.max(tall / 2 + 4, Math.min(height - tall / 2 - 4, y)) - tall / 2 + 7.5;
         g.lineWidth = 3;
