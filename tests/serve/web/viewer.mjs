@@ -46,6 +46,7 @@ async function open(options = {}, address = part().url) {
     return page;
 }
 
+const TOGETHER = 700; // ms: changes that come sooner are one step
 const SELDOM = {polling: 20}; // ms: for each frame that is looked at, the page draws one
 
 /** Until the final picture of the present state is there. */
@@ -305,6 +306,7 @@ async function readable() {
         await judged(page, 'Help');
         await shot(page, `help_${colorScheme}`);
         await page.keyboard.press('Escape');
+        await page.waitForFunction(() => !document.activeElement.closest('dialog'));
         await page.keyboard.press('x');
         await slicesRest(page);
         await judged(page, 'slices');
@@ -1087,6 +1089,7 @@ async function overlaid() {
     check('a label is switched off', now.overlay === true &&
         now['overlay-look'] === '1:0.5,2:0', now['overlay-look']);
     check('in slices too', one !== both);
+    await page.waitForTimeout(TOGETHER);
     await settle(page, page.getByLabel('colour of left').fill('#00ff00'));
     now = await keys(page);
     check('a label of an overlay has a colour', now['overlay-look'] === 'labels,1:#00ff00,1:0.5,2:0', JSON.stringify(now));
