@@ -60,7 +60,8 @@ bool report_text(FILE *out, const source *from) {
     if (!nrrd && !meta)
         return false;
     if (nrrd)
-        fprintf(out, "NRRD000%c\n", text[7]);
+        fprintf(out, "NRRD000%c\n",
+                text[7] >= '1' && text[7] <= '9' ? text[7] : '?');
     for (int n = 0; n < LINES && left; n++) {
         size_t length = line_length(text, left), used = length;
         if (used && text[used - 1] == '\r')

@@ -137,9 +137,9 @@ class Progress(InFolder):
             raise ZeroDivisionError
         for stage, work in (
                 ("read", lambda told: sg.Volume(
-                    "phantom:turbulence", dims=(100,) * 3, progress=told)),
+                    "phantom:turbulence", dims=(180,) * 3, progress=told)),
                 ("read", lambda told: sg.render(
-                    "phantom:turbulence", dims=(100,) * 3, size=24, progress=told)),
+                    "phantom:turbulence", dims=(180,) * 3, size=24, progress=told)),
                 ("render", lambda told: volume.render(
                     size=2400, quality="high", threads=1, progress=told)),
                 ("render", lambda told: volume.project(

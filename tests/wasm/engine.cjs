@@ -83,7 +83,7 @@ async function run({name, path, files, kept, recipe, turn, threads = 1, narrow, 
             if (first && out.levels.length)
                 return;
             if (turn && wait === 0 && out.levels.length === before && out.levels.at(-1) === 1) {
-                made.hear(JSON.stringify({t: 'set', n: 1, recipe: turn}));
+                made.hear(JSON.stringify({t: 'set', step: 1, keys: turn}));
                 turn = null;
             }
             if (wait)

@@ -37,7 +37,7 @@ async function pause(milliseconds) {
     };
     made.open(path, {size: [+side, +side]});
     for (let turn = 0; turn < +turns; turn++) {
-        made.hear(JSON.stringify({t: 'set', n: turn + 1, recipe: {azimuth: 30 + turn / 8}}));
+        made.hear(JSON.stringify({t: 'set', step: turn + 1, keys: {azimuth: 30 + turn / 8}}));
         for (let wait; (wait = made.step()) >= 0; await pause(wait))
             take();
         take();
