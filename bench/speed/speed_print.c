@@ -133,12 +133,14 @@ static const int predicted[] = {8, 16, 64};
 
 /* How many times as fast as one thread so many are at least, if each takes the
  * next item when it has none (Graham 1966): no batch ends later than it would
- * with its work divided evenly and its longest item begun then. */
+ * with its work divided evenly and its longest item begun then.  NaN where one
+ * thread takes the picture as one item, as by footprint. */
 static double predict(const speed_row *one, int threads) {
     const double share = 1.0 / threads, work = one->least - one->serial;
-    return one->serial < 0 ? NAN
-                           : one->least / (one->serial + work * share +
-                                           one->longest * (1 - share));
+    return one->serial < 0 || one->longest > work / 2
+               ? NAN
+               : one->least / (one->serial + work * share +
+                               one->longest * (1 - share));
 }
 
 /* The same as it was measured. */
