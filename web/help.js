@@ -81,7 +81,7 @@ const GUIDE = [
         'goes to the next, a double click shows one large. The value where they cross stands at the lower right.',
     'The value of a CT is in Hounsfield units, and "Slices" in the panel has the usual windows.'],
     ['Measure', '"Measures" draws lengths and angles, on slices and on the surface, and ellipses on slices, with the ' +
-        'mean of their values. The pointer at rest tells the place and the value under it.'],
+        'mean of their values. The pointer at rest shows the place and the value under it.'],
     ['Cut', '"Clip" has planes with handles on the picture; "Cut here" cuts what is before the middle.'],
     ['Take back, save, share', '"Undo" takes back what you did, "Reset" all of it. "Picture" saves what is shown ' +
         'once it is final. "Link" and "Recipe" keep the state, for you or others; "Command" is the command ' +

@@ -380,7 +380,7 @@ snow_status snow_measure_read(snow_context *context, const char *text, int n,
             m.kind = (snow_measure_kind)kind;
     if (m.kind == SNOW_MEASURE_NONE)
         return refuse(&r, r.count < 0 ? "it is too long"
-                                      : "it is none of line, angle, ellipse");
+                                      : "its kind must be line, angle or ellipse");
     SNOW_TRY(m.kind == SNOW_MEASURE_ELLIPSE ? read_ellipse(&r, &m)
                                             : read_points(&r, &m));
     return SNOW_RECORD_FILL(context, snow_measure, &m, out);

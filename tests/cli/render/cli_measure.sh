@@ -278,7 +278,7 @@ refused() {
     run 2 "$1" render -o e.png --measure "$1"
     says "$2"
 }
-refused "lin 0,0,0 1,1,1" "measure 1, 'lin 0,0,0 1,1,1': it is none of line, angle, ellipse; .* such as line"
+refused "lin 0,0,0 1,1,1" "measure 1, 'lin 0,0,0 1,1,1': its kind must be line, angle or ellipse; .* such as line"
 refused "line 0,0,0" "measure 1, 'line 0,0,0': a line has two points; .* such as line 0,0,0 10,0,0"
 refused "line 0,0,0 1,1,1; line 0,0 1,1,1" "measure 2, .*: a point has three numbers"
 refused "line 0,0,x 1,1,1" "a point has three numbers"
