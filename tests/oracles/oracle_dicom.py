@@ -812,7 +812,7 @@ def palette(first=0, count=256, bits=16, words=True, **tags):
     data = image(numbers, (0, 0, 0), PhotometricInterpretation="PALETTE COLOR",
                  **tags)
     kind = "u2" if bits == 16 else "u1"
-    tables = [oracle.sample(kind, (count,)) for _ in range(3)]
+    tables = [oracle.sample(kind, (count,), seed) for seed in (2, 3, 4)]
     order = ">" if tags.get("syntax") == ExplicitVRBigEndian else "<"
     for table, name in zip(tables, ("Red", "Green", "Blue")):
         descriptor = f"{name}PaletteColorLookupTableDescriptor"
@@ -855,8 +855,7 @@ data.RescaleSlope, data.RescaleIntercept = 2, -5  # of no meaning here
 write("palette.dcm", data)
 expect_palette(colours, "palette with a slope")
 
-# Of entries, of lines between them, and of both once more, which begins anew with
-# the entry before: 4 + 6 + 4, and 2 of another.
+# 2 entries, lines of 2 and 5, the first two segments once more, and a line of 3.
 for bits, kind in ((16, "u2"), (8, "u1")):
     data, _ = palette(count=16, bits=bits, words=bits == 16)
     far = 60000 if bits == 16 else 250

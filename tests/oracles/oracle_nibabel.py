@@ -52,7 +52,7 @@ for n, (version, order, (unit, form)) in enumerate(itertools.product(
 
 # Complex numbers are vectors of two.
 for kind in ("c8", "c16"):
-    voxels = oracle.sample("f4", (5, 6, 7)) + 1j * oracle.sample("f4", (5, 6, 7))
+    voxels = oracle.sample("f4", (5, 6, 7)) + 1j * oracle.sample("f4", (5, 6, 7), 2)
     nibabel.save(nibabel.Nifti1Image(voxels.astype(kind), np.diag([1, 2, 3, 1])),
                  "complex.nii")
     stored = np.asarray(nibabel.load("complex.nii").dataobj).T
