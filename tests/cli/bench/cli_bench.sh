@@ -39,7 +39,10 @@ for row in rows:
     for n in (8, 16, 64):
         times = row["predicted_%d_threads" % n]
         assert times is None or (row["threads"] == 1 and 0 < times <= n), row
-        assert times or row["threads"] > 1 or row["method"] != "shear-warp", row
+        # On a busy machine one item may wait for most of a short picture.
+        assert (times or row["threads"] > 1 or row["method"] != "shear-warp" or
+                2 * row["longest_items_ms"] > row["min_ms"] - row["serial_ms"]
+                ), row
     assert row["threads"] > 1 or row["times_one_thread"] == 1, row
     assert row["threads"] > 1 or 0 <= row["serial_ms"] <= row["min_ms"], row
     assert 0 < row["min_ms"] <= row["median_ms"], row
