@@ -12,17 +12,18 @@
 #define WARP_VECTORS (4 * WARP_CHANNELS / LANES) /* of a run */
 #define WARP_PIXELS (LANES / WARP_CHANNELS)      /* of a vector */
 
-/* Weights along x in the lanes of a part of a run, as cubic polynomials. */
+/* Coefficients of the weights along x in the lanes of a part of a run. */
+TARGET static inline __attribute__((always_inline)) V(vec)
+WARP_NAME(_taps)(int part, int power) {
+    return V(load)(part * LANES + (WARP_CHANNELS == 2 ? catmull_rom2[power]
+                                                      : catmull_rom4[power]));
+}
+
 TARGET static inline __attribute__((always_inline)) V(vec)
 WARP_NAME(_along_x)(int part, V(vec) f) {
-    float lanes[4][LANES];
-    for (int i = 0; i < LANES; i++)
-        for (int power = 0; power < 4; power++)
-            lanes[power][i] =
-                catmull_rom[power][(part * LANES + i) / WARP_CHANNELS];
-    V(vec) w = V(load)(lanes[3]);
+    V(vec) w = WARP_NAME(_taps)(part, 3);
     for (int power = 2; power >= 0; power--)
-        w = V(fma)(w, f, V(load)(lanes[power]));
+        w = V(fma)(w, f, WARP_NAME(_taps)(part, power));
     return w;
 }
 

@@ -10,12 +10,24 @@
 #include <string.h>
 
 /* Coefficients of 1, f, f^2 and f^3 for the weight of each tap. */
-static const float catmull_rom[4][4] = {
-    {0, 1, 0, 0},
-    {-0.5f, 0, 0.5f, 0},
-    {1, -2.5f, 2, -0.5f},
-    {-0.5f, 1.5f, -1.5f, 0.5f},
-};
+#define TAPS(a, b, c, d) \
+    { FLOATS(a), FLOATS(b), FLOATS(c), FLOATS(d) }
+#define POLYNOMIALS                                                          \
+    {                                                                        \
+        TAPS(0, 1, 0, 0), TAPS(-0.5f, 0, 0.5f, 0), TAPS(1, -2.5f, 2, -0.5f), \
+            TAPS(-0.5f, 1.5f, -1.5f, 0.5f),                                  \
+    }
+#define FLOATS(a) a
+static const float catmull_rom[4][4] = POLYNOMIALS;
+#undef FLOATS
+
+/* The same for each float of four pixels of 2 and 4 channels, which compilers
+ * load as they stand. */
+#define FLOATS(a) a, a
+static const float catmull_rom2[4][8] = POLYNOMIALS;
+#undef FLOATS
+#define FLOATS(a) a, a, a, a
+static const float catmull_rom4[4][16] = POLYNOMIALS;
 
 #include "simd/vec_scalar.h"
 
