@@ -38,7 +38,8 @@ SNOW_API snow_status snow_context_new(
     const snow_allocator *allocator, snow_context **out);
 SNOW_API void snow_context_free(snow_context *context);
 
-/* The message of the last call that failed, one line; "" before any. */
+/* The message of the last call that failed, one line; "" before any. NULL,
+ * where there was no memory for a context: says so. */
 SNOW_API const char *snow_context_message(const snow_context *context);
 
 /* Receives warnings (a guess, bytes after the data), one line each; or NULL. */

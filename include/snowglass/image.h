@@ -16,8 +16,9 @@ SNOW_API void snow_image_free(snow_image *image);
 SNOW_API int snow_image_width(const snow_image *image);
 SNOW_API int snow_image_height(const snow_image *image);
 SNOW_API int snow_image_channels(const snow_image *image);
-/* Pixel (x, y) is at [(y * width + x) * channels]. */
+/* Pixel (x, y) is at [((size_t)y * width + x) * channels]; data: to read. */
 SNOW_API float *snow_image_pixels(snow_image *image);
+SNOW_API const float *snow_image_data(const snow_image *image);
 
 /* 64-bit FNV-1a of sizes and floats (little endian, -0 as 0, one NaN). */
 SNOW_API uint64_t snow_image_checksum(const snow_image *image);

@@ -64,7 +64,7 @@ typedef struct snow_measure {
     int axis, outside; /* of the grid; the first point out of the volume: 1.. */
     int64_t index, count; /* slice across that axis; voxels, -1: none of it */
     double points[3][3];
-    double result; /* length; degrees; area */
+    double result;                    /* length; degrees; area */
     double mean, deviation, min, max; /* of data values; NaN: unknown */
     char unit[16];
 } snow_measure;

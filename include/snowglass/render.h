@@ -206,8 +206,8 @@ SNOW_API snow_status snow_slice_grid(snow_context *, const snow_volume_info *,
  * tenth of its range, or labels. */
 SNOW_API snow_status snow_slice_lay(const snow_image *slice,
     const snow_slice_place *place, bool cross, snow_image *sheet);
-SNOW_API snow_status snow_slice_shown(const snow_volume *,
-    const snow_transfer *, int axis, int64_t ends[2]);
+SNOW_API snow_status snow_slice_shown(
+    const snow_volume *, const snow_transfer *, int axis, int64_t ends[2]);
 
 /* Owned by the frame until its next picture. Depths, or NULL: world distance
  * from the target's plane to where opacity passes 1/2, or the surface. */

@@ -30,7 +30,7 @@ typedef struct snow_view {
     double position[3], target[3];         /* world; camera, what it looks at */
     double upward[3]; /* world; up in the picture. Without it a camera with a
                          position has +z up, or +y if it looks along z */
-    double strip; /* of the width at the right, for a legend: 0 to 0.5 */
+    double strip;     /* of the width at the right, for a legend: 0 to 0.5 */
 } snow_view;
 SNOW_RECORD(snow_view);
 /* By name, of any case: a side of the world (docs/model.md), where the camera

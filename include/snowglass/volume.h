@@ -33,7 +33,8 @@ typedef enum snow_type {
 SNOW_API size_t snow_type_size(snow_type type);
 SNOW_API const char *snow_type_name(snow_type type);
 SNOW_API snow_type snow_type_from_name(const char *name);
-/* Picometres in a unit of length of any spelling, and its name; 0: no length. */
+/* Picometres in a unit of length of any spelling, and its name; 0: no length.
+ */
 SNOW_API double snow_unit_length(const char *unit, char name[16]);
 
 /* A channel: colour, below 0: not said; data values to show, 0s: not said. */
@@ -66,9 +67,9 @@ typedef struct snow_volume_info {
     int64_t channels; /* of voxels with several values; else 0 or 1 */
     snow_channel channel[SNOW_CHANNELS_MAX]; /* the first of them */
     bool negative, estimate; /* says the file: high is dark; statistics */
-    uint64_t light; /* bit n: channel n of several is of emitted light */
-    double axis_scale[3];    /* world's length of a unit; below 0: down; 0: 1 */
-    char axis_unit[3][16];   /* of the world's x, y, z; "": `unit`; "1": none */
+    uint64_t light;        /* bit n: channel n of several is of emitted light */
+    double axis_scale[3];  /* world's length of a unit; below 0: down; 0: 1 */
+    char axis_unit[3][16]; /* of the world's x, y, z; "": `unit`; "1": none */
     bool directions; /* says the file: three floats are a vector of space */
 } snow_volume_info;
 SNOW_RECORD(snow_volume_info);
@@ -109,9 +110,10 @@ typedef struct snow_volume_options {
     const char *component; /* "x", "magnitude", ... or NULL (docs/formats.md) */
     const char *label_table; /* path: names and colours of labels; or NULL */
     bool each_channel, time_given; /* no warning of others: channels, steps */
-    int64_t levels; /* of refinement, so many of the coarsest; 0: all */
+    int64_t levels;  /* of refinement, so many of the coarsest; 0: all */
     const char *suv; /* PET: "bw", "lbm", "bsa", "none"; NULL: bw, if known */
-    double z_scale; /* of the world's z; 0: of the earth's grids by their size */
+    double
+        z_scale; /* of the world's z; 0: of the earth's grids by their size */
     const char *vertical; /* WRF: "levels", "height"; NULL: levels */
 } snow_volume_options;
 SNOW_RECORD(snow_volume_options);
@@ -136,8 +138,8 @@ typedef size_t snow_read_at_fn(void *user, uint64_t at, void *bytes, size_t);
 SNOW_API snow_status snow_volume_open_with(snow_context *, const char *name,
     snow_read_at_fn *read_at, void *user, uint64_t size,
     const snow_volume_options *options, snow_volume **out);
-/* Over the caller's voxels, not copied. Of `info` dims, type, matrix (0s:
- * identity), slope (0: 1), intercept, medical, unit, modality, window,
+/* Over the caller's voxels, not copied. Of `info` dims, type, matrix (0s: by
+ * spacing, 0s: 1), slope (0: 1), intercept, medical, unit, modality, window,
  * value_unit, hounsfield, eight_bits and whole count. */
 SNOW_API snow_status snow_volume_wrap(snow_context *context,
     const snow_volume_info *info, const void *voxels, snow_volume **out);

@@ -152,8 +152,6 @@ static snow_status copy_image(frame_slot *slot, const snow_image *from,
         drop_image(to);
         return SNOW_STATUS_OK;
     }
-    /* the pixels are only read; the library offers no const access */
-    snow_image *image = (snow_image *)(uintptr_t)from;
     int width = snow_image_width(from), height = snow_image_height(from);
     int channels = snow_image_channels(from);
     if (*to &&
@@ -166,7 +164,7 @@ static snow_status copy_image(frame_slot *slot, const snow_image *from,
         if (status != SNOW_STATUS_OK)
             return status;
     }
-    memcpy(snow_image_pixels(*to), snow_image_pixels(image),
+    memcpy(snow_image_pixels(*to), snow_image_data(from),
            (size_t)width * (size_t)height * (size_t)channels * sizeof(float));
     return SNOW_STATUS_OK;
 }

@@ -18,7 +18,7 @@ snow_status light_add(snow_context *context, const snow_image *one,
                                                snow_image_height(one), 4, sum);
     if (status != SNOW_STATUS_OK)
         return status;
-    const float *from = snow_image_pixels((snow_image *)(uintptr_t)one);
+    const float *from = snow_image_data(one);
     float *to = snow_image_pixels(*sum);
     for (size_t n = pixels_of(one); n; n--, from += channels, to += 4) {
         to[3] = fmaxf(to[3], from[channels - 1]);
@@ -131,8 +131,8 @@ static void lay(const snow_transfer *transfer, double cover,
     const size_t count =
         (size_t)snow_image_width(out) * (size_t)snow_image_height(out);
     const int parts = snow_image_channels(below);
-    const float *value = snow_image_pixels((snow_image *)(uintptr_t)values);
-    const float *from = snow_image_pixels((snow_image *)(uintptr_t)below);
+    const float *value = snow_image_data(values);
+    const float *from = snow_image_data(below);
     float *to = snow_image_pixels(out);
     for (size_t n = 0; n < count; n++, from += parts, to += 4) {
         double rgba[4];

@@ -15,7 +15,7 @@
 /* The depth that is nearest to a pixel. */
 static double near(const snow_image *depths, int x, int y) {
     int width = snow_image_width(depths), height = snow_image_height(depths);
-    const float *at = snow_image_pixels((snow_image *)(uintptr_t)depths);
+    const float *at = snow_image_data(depths);
     double best = NAN;
     int least = REACH * REACH + 1;
     for (int v = y - REACH; v <= y + REACH; v++)

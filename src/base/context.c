@@ -77,7 +77,8 @@ void snow_context_free(snow_context *context) {
 }
 
 const char *snow_context_message(const snow_context *context) {
-    return context->message;
+    return context ? context->message
+                   : snow_status_description(SNOW_STATUS_NO_MEMORY);
 }
 
 void snow_context_set_warning(snow_context *context, snow_warning_fn *warning,

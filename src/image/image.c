@@ -100,6 +100,10 @@ float *snow_image_pixels(snow_image *image) {
     return image->pixels;
 }
 
+const float *snow_image_data(const snow_image *image) {
+    return image->pixels;
+}
+
 /* Adds the four bytes of a number, lowest first, to an FNV-1a hash. */
 static uint64_t hash_number(uint64_t hash, uint32_t number) {
     for (int shift = 0; shift < 32; shift += 8) {

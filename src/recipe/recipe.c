@@ -25,7 +25,7 @@ void snow_recipe_init_sized(snow_recipe *recipe, size_t size) {
 
 void snow_recipe_clear(snow_recipe *recipe) {
     json_decref(recipe->owned);
-    recipe->owned = NULL;
+    snow_recipe_init_sized(recipe, recipe->size);
 }
 
 /* --- reading -------------------------------------------------------------- */
