@@ -158,7 +158,7 @@ END
 }
 zsh_gives() { # WANT TEXT
     local got
-    got=$(timeout 60 bash -c "$(declare -f zsh_types); zsh_types '$2'")
+    got=$(timeout 300 bash -c "$(declare -f zsh_types); zsh_types '$2'")
     [[ $got == "$1"* ]] || { echo "'$2': '$got', not '$1'" && return 1; }
 }
 export zsh_file WORK

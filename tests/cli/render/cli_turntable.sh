@@ -162,9 +162,9 @@ refused 4 "a file that has changed is not resumed" "other settings" $v --resume
 
 # Killed half-way, then resumed: the same bytes.
 big="turntable phantom:engine --dims 64x64x64 -q -s 700x700 --frames 24"
-as_whole() { # each frame of killed/
+as_whole() { # each frame of killed/, which slow machines may have none of
     for f in killed/*.png; do
-        cmp -s "$f" "whole/${f#killed/}" || fail "frame $f $1"
+        [ ! -e "$f" ] || cmp -s "$f" "whole/${f#killed/}" || fail "frame $f $1"
     done
 }
 mkdir whole killed
