@@ -317,20 +317,27 @@ static int ascending(const void *a, const void *b) {
     return (p > q) - (p < q);
 }
 
-static void quantiles_are_those_of_sorted_values(void **state) {
+static void check_quantiles(void **state, snow_type type, double decades) {
     enum { N = 3001 };
     static double values[N], sorted[N];
+    static float floats[N];
+    const bool small = type == SNOW_TYPE_FLOAT32;
     static const double shares[4] = {0, 0.01, 0.5, 1};
     /* the 31st: 0.01 * 3001 rounded up */
     static const int places[4] = {0, 30, 1500, N - 1};
     uint64_t random = 7;
     for (int i = 0; i < N; i++) {
-        double magnitude = pow(10, 80 * support_uniform(&random) - 40);
+        double magnitude =
+            pow(10, decades * (2 * support_uniform(&random) - 1));
         values[i] = support_uniform(&random) < 0.4 ? -magnitude : magnitude;
+        floats[i] = (float)values[i];
+        if (small)
+            values[i] = (double)floats[i];
     }
     memcpy(sorted, values, sizeof values);
     qsort(sorted, N, sizeof *sorted, ascending);
-    snow_volume *volume = looks_row(*state, SNOW_TYPE_FLOAT64, values, N);
+    snow_volume *volume =
+        looks_row(*state, type, small ? (void *)floats : (void *)values, N);
     double found[4];
     snow_histogram census;
     assert_int_equal(snow_histogram_new(volume, NULL, (snow_scale){0},
@@ -342,6 +349,11 @@ static void quantiles_are_those_of_sorted_values(void **state) {
     snow_histogram_free(&census);
     for (int i = 0; i < 4; i++)
         assert_true(found[i] == sorted[places[i]]);
+}
+
+static void quantiles_are_those_of_sorted_values(void **state) {
+    check_quantiles(state, SNOW_TYPE_FLOAT64, 40);
+    check_quantiles(state, SNOW_TYPE_FLOAT32, 30);
 }
 
 /* 8 and 16 bit values are counted, others searched for: one answer. */
