@@ -276,19 +276,6 @@ snow_volume_info snow_volume_info_of_box(const snow_volume_info *whole,
 
 /* Voxels of the caller come without a file: no source is checked against the
  * sizes, whose truth is the caller's word. */
-/* Of voxels without a matrix: 0s are 1. */
-static snow_status take_spacing(snow_context *context, const double spacing[3],
-                                snow_volume_info *own) {
-    for (int axis = 0; axis < 3; axis++) {
-        if (spacing[axis] != 0 && !(spacing[axis] > 0))
-            return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                             "the spacing along %c is %g; it must be above 0",
-                             "xyz"[axis], spacing[axis]);
-        own->matrix[axis][axis] = spacing[axis] > 0 ? spacing[axis] : 1;
-    }
-    return SNOW_STATUS_OK;
-}
-
 snow_status snow_volume_wrap(snow_context *context,
                              const snow_volume_info *given, const void *voxels,
                              snow_volume **out) {
@@ -301,10 +288,16 @@ snow_status snow_volume_wrap(snow_context *context,
     snow_volume_info own = snow_volume_info_default("memory");
     memcpy(own.dims, info.dims, sizeof own.dims);
     own.type = info.type;
-    if (memcmp(info.matrix, zero, sizeof zero) != 0)
+    const bool placed = memcmp(info.matrix, zero, sizeof zero) != 0;
+    if (placed)
         memcpy(own.matrix, info.matrix, sizeof own.matrix);
-    else
-        SNOW_TRY(take_spacing(context, info.spacing, &own));
+    for (int axis = 0; axis < 3 && !placed; axis++)
+        if (info.spacing[axis] > 0)
+            own.matrix[axis][axis] = info.spacing[axis];
+        else if (info.spacing[axis] != 0)
+            return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                             "the spacing along %c is %g; it must be above 0",
+                             "xyz"[axis], info.spacing[axis]);
     own.slope = info.slope == 0 ? 1 : info.slope;
     own.intercept = info.intercept;
     own.medical = info.medical;
