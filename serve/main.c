@@ -195,8 +195,23 @@ static int open_all(viewer *v) {
     return done;
 }
 
+/* Who came by SSH has the browser on another machine. */
+static void say_tunnel(const viewer *v) {
+    const options *opts = &v->opts;
+    const char *came = getenv("SSH_CONNECTION"); /* client port server port */
+    const char *port = strchr(v->sockets.host, ':');
+    char server[64];
+    if (came && port && opts->verbosity >= 0 && !opts->listen.path &&
+        strncmp(v->sockets.host, "127.0.0.1:", 10) == 0 &&
+        sscanf(came, "%*s %*s %63s", server) == 1)
+        say("note: on the machine of your browser run ssh -L %s:%s %s, then "
+            "open the URL",
+            port + 1, v->sockets.host, server);
+}
+
 /* The one line that a script reads. */
 static int print_url(const viewer *v) {
+    say_tunnel(v);
     printf("http://%s/#token=%s\n", v->sockets.host, v->guard.token);
     return finish_stdout();
 }

@@ -116,9 +116,8 @@ static int read_page(page_text *out) {
         page = fopen(path, "rb");
     }
     if (!page)
-        return fail_usage("export: %s is missing; install Debian's package "
-                          "snowglass-web, or run ./dev web in the sources and "
-                          "install again",
+        return fail_usage("export: %s is missing; run ./dev web in the "
+                          "sources, or install the package snowglass-web",
                           path);
     bool good = append_file(out, page);
     fclose(page);
@@ -340,9 +339,12 @@ static int append_look(const options *opts, page_text *page) {
 
 static int make(snow_context *context, const options *opts,
                 const snow_volume *volume, page_text *page) {
-    char *recipe = recipe_text(opts, snow_volume_get_info(volume),
-                               opts->tf ? name_of(opts->tf) : NULL);
-    begin_script(page, name_of(opts->operands[0]), recipe ? recipe : "{}");
+    const snow_volume_info *info = snow_volume_get_info(volume);
+    /* The page is sent away; a patient's file may be called by a name. */
+    const bool person = info->medical || *info->modality;
+    char *recipe = recipe_text(opts, info, opts->tf ? name_of(opts->tf) : NULL);
+    begin_script(page, person ? "volume" : name_of(opts->operands[0]),
+                 recipe ? recipe : "{}");
     free(recipe);
     int done = append_volume(context, opts, volume, page);
     append_text(page, "</script>\n");

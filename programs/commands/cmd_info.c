@@ -1,6 +1,7 @@
 /* cmd_info.c - the verb info: geometry, type, statistics and histogram of a
  * volume, and the share of voxels that a threshold leaves out. */
 #include "commands/commands.h"
+#include "commands/first.h"
 #include "commands/info_list.h"
 #include "commands/info_volume.h"
 #include "commands/world.h"
@@ -185,8 +186,8 @@ static void print_geometry(const facts *f) {
                info->window[1] - info->window[0],
                (info->window[0] + info->window[1]) / 2, info->window[0],
                info->window[1]);
-    if (f->patient)
-        printf("%-14s%s\n", "patient", f->patient);
+    if (f->opts->patient)
+        printf("%-14s%s\n", "patient", f->patient ? f->patient : "no name");
 }
 
 /* The look and the sparse ratios are those that render would use with the same
@@ -200,6 +201,8 @@ static void print_values(const facts *f) {
                m->sum / (double)m->finite,
                f->info->hounsfield ? " (Hounsfield units)" : "");
     printf("%-14s%s\n", "look", snow_transfer_description(f->transfer));
+    if (strcmp(f->opts->mode, "over") != 0)
+        printf("%-14s%s\n", "mode", f->opts->mode);
     const snow_label *label;
     for (size_t i = 0; (label = snow_transfer_label(f->transfer, i)); i++)
         printf("%-14s%.10g  #%02x%02x%02x  %s%s\n", i ? "" : "labels",
@@ -299,6 +302,7 @@ static int report_json(const facts *f) {
     if (f->patient)
         json_object_set_new(object, "patient", json_string(f->patient));
     set_values(object, &f->measures);
+    json_object_set_new(object, "mode", json_string(f->opts->mode));
     json_object_set_new(object, "look",
                         json_string(snow_transfer_description(f->transfer)));
     json_object_set_new(object, "labels", labels_json(f));
@@ -314,11 +318,15 @@ static int report_text(const facts *f) {
     return finish_stdout();
 }
 
-/* No picture is made, but the sparse ratio needs the transfer function. */
-int cmd_info(const options *opts) {
+/* No picture is made, but the look and the sparse ratio are those of the first
+ * picture. */
+int cmd_info(const options *given) {
+    static options seen; /* large */
+    const options *opts = &seen;
     snow_context *context = NULL;
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
+    seen = *given;
     if (opts->operand_count == 0)
         return fail_usage("info: an operand is missing; give snowglass info "
                           "INPUT...");
@@ -329,6 +337,8 @@ int cmd_info(const options *opts) {
         done = open_context(opts, &context);
     if (done == CONTINUE)
         done = info_open(context, opts, opts->operands[0], NULL, &volume);
+    if (done == CONTINUE)
+        first_take(&seen, snow_volume_get_info(volume));
     if (done == CONTINUE)
         done = open_look(context, opts, volume, &transfer);
     if (done == CONTINUE) {

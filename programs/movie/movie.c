@@ -423,7 +423,8 @@ static int finish_movie(movie *s, int done) {
     else if (done == CONTINUE && s->place.format)
         done = fail_output(
             "%s: ffmpeg was not found on the PATH; the frames are in %s: "
-            "install ffmpeg and repeat the command with --resume",
+            "install ffmpeg (apt install ffmpeg) and repeat the command with "
+            "--resume",
             s->place.output, s->place.folder);
     if (done != CONTINUE)
         clean_up(s);

@@ -127,7 +127,8 @@ static snow_status add_colors(const picture_annotations *annotations, int bars,
 }
 
 /* The labels of an overlay stand instead of the volume's bar, or below bars of
- * channels; so does the bar of its values, which is called by its file. */
+ * channels; so does the bar of its values.  It is not called by its file, whose
+ * name may be a patient's. */
 static snow_status add_legend(const picture_annotations *annotations,
                               snow_overlay *overlay) {
     const options *opts = annotations->opts;
@@ -137,11 +138,11 @@ static snow_status add_legend(const picture_annotations *annotations,
     const snow_transfer *over =
         slice || strcmp(opts->mode, "over") == 0 ? annotations->overlay : NULL;
     const bool labels = over && snow_transfer_label(over, 0);
-    char name[STEM_BYTES];
+    char caption[TITLE_BYTES];
     double range[2];
     if (labels && !mixed) {
-        make_caption(annotations, name);
-        return snow_overlay_color_bar(overlay, over, name, NULL, 0, 1);
+        make_caption(annotations, caption);
+        return snow_overlay_color_bar(overlay, over, caption, NULL, 0, 1);
     }
     const int bars =
         (mixed ? annotations->channels->list.count : 1) + (over != NULL);
@@ -149,9 +150,8 @@ static snow_status add_legend(const picture_annotations *annotations,
                                : add_colors(annotations, bars, overlay);
     if (status != SNOW_STATUS_OK || !over)
         return status;
-    default_stem(opts->overlay, name);
     snow_transfer_domain(over, &range[0], &range[1]);
-    return snow_overlay_color_bar(overlay, over, name,
+    return snow_overlay_color_bar(overlay, over, "overlay",
                                   slice && !labels ? range : NULL, 0, bars);
 }
 

@@ -177,11 +177,16 @@ static snow_status fit_values(const snow_histogram *histogram,
         return SNOW_STATUS_OK;
     if (!snow_has_8_bits(&histogram->volume->info) || builder->scale.log ||
         histogram->max > 255) {
+        const char *offset =
+            histogram->max > CT_OFFSET
+                ? "if the values have an offset of 1024, give --range"
+                : "another range may suit them better than";
+        const double added = histogram->max > CT_OFFSET ? CT_OFFSET : 0;
         snow_notify(context,
-                    "%s is for Hounsfield units, but the smallest value is %g: "
-                    "if the values have an offset of 1024, give --range %g,%g",
-                    look->preset, histogram->min, builder->low + CT_OFFSET,
-                    builder->high + CT_OFFSET);
+                    "%s is for Hounsfield units, but the smallest value is %g "
+                    "and the largest %g: %s %g,%g",
+                    look->preset, histogram->min, histogram->max, offset,
+                    builder->low + added, builder->high + added);
         return SNOW_STATUS_OK;
     }
     SNOW_TRY(snow_object_range(histogram, &low, &high));
