@@ -195,6 +195,8 @@ static snow_status add_annotations(const picture_annotations *annotations,
         status = snow_overlay_scale_bar(overlay, &annotations->info, view);
     if (status == SNOW_STATUS_OK && !opts->no_labels)
         status = snow_overlay_orientation(overlay, &annotations->info, view);
+    if (status == SNOW_STATUS_OK && annotations->more)
+        status = annotations->more(annotations->user, overlay);
     if (status == SNOW_STATUS_OK)
         status = add_title(annotations, step, overlay);
     if (status == SNOW_STATUS_OK)
@@ -246,7 +248,8 @@ snow_status annotations_make(const picture_annotations *annotations,
     if (!shows_annotations(opts->output) && strcmp(opts->output, "-") != 0)
         return SNOW_STATUS_OK;
     if (!letters && !opts->legend.scale && !opts->title &&
-        !opts->annotate.text && !opts->box && !annotations->measures)
+        !opts->annotate.text && !opts->box && !annotations->measures &&
+        !annotations->more)
         return SNOW_STATUS_OK;
     view.azimuth = azimuth;
     char time[TITLE_BYTES];

@@ -21,6 +21,9 @@ typedef struct picture_annotations {
     const measures *measures;     /* or NULL */
     int axis;                     /* of the grid, that a slice lies across, */
     const int64_t *index;         /* and its number; NULL: it is no slice */
+    snow_status (*more)(const void *user, snow_overlay *overlay);
+    const void *user; /* of `more`, which draws what is of several slices, or is
+                         NULL; the title keeps off that */
 } picture_annotations;
 
 /* Refuses annotations for files of floats, which cannot show them.  Returns

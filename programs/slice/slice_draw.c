@@ -204,9 +204,20 @@ static snow_status add_measures(const slice_work *w, snow_overlay *overlay) {
     return status;
 }
 
+static snow_status add_all(const void *user, snow_overlay *overlay) {
+    const slice_work *w = user;
+    snow_status status = SNOW_STATUS_OK;
+    if (!w->opts.no_labels)
+        status = add_letters(w, overlay);
+    if (status == SNOW_STATUS_OK && !w->opts.no_labels && w->kind == SLICE_GRID)
+        status = add_numbers(w, overlay);
+    if (status == SNOW_STATUS_OK && w->measures)
+        status = add_measures(w, overlay);
+    return status;
+}
+
 snow_status slice_make_overlay(slice_work *w, snow_overlay **out) {
     options opts = w->opts;
-    snow_overlay *overlay = NULL;
     opts.no_labels |= w->kind != SLICE_ONE; /* each has its own */
     picture_annotations annotations = {&opts,
                                        *snow_volume_get_info(w->volume),
@@ -215,29 +226,17 @@ snow_status slice_make_overlay(slice_work *w, snow_overlay **out) {
                                        {0, 0},
                                        w->transfer ? &w->channels : NULL,
                                        layers_legend(&w->layers, false),
-.measures = NULL};
+                                       .measures = NULL};
     const bool several = w->kind != SLICE_ONE && slice_has_colors(w);
-    const bool more = several && !w->opts.no_labels;
+    if (several && (!w->opts.no_labels || w->measures)) {
+        annotations.more = add_all;
+        annotations.user = w;
+    }
     if (w->kind == SLICE_ONE) {
         annotations.measures = w->measures;
         annotations.axis = w->axis;
         annotations.index = &w->places[0].index;
     }
     annotations_find_unit(&opts, w->volume, false, &annotations.info);
-    snow_status status =
-        annotations_make(&annotations, 0, -1, NULL, w->context, &overlay);
-    if (status == SNOW_STATUS_OK && (more || (several && w->measures)) &&
-        !overlay)
-        status = snow_overlay_new(w->context, w->size[0], w->size[1], &overlay);
-    if (status == SNOW_STATUS_OK && more)
-        status = add_letters(w, overlay);
-    if (status == SNOW_STATUS_OK && more && w->kind == SLICE_GRID)
-        status = add_numbers(w, overlay);
-    if (status == SNOW_STATUS_OK && several && w->measures)
-        status = add_measures(w, overlay);
-    if (status == SNOW_STATUS_OK)
-        *out = overlay;
-    else
-        snow_overlay_free(overlay);
-    return status;
+    return annotations_make(&annotations, 0, -1, NULL, w->context, out);
 }

@@ -248,10 +248,12 @@ static void draw_cross(const snow_slice_place *place, snow_image *sheet) {
     const double gap = fmax(CROSS_GAP * side, 3);
     const double x = floor(place->cross[0] - (wide - 1) / 2);
     const double y = floor(place->cross[1] - (wide - 1) / 2);
-    fill(place, x, 0, x + wide, y - gap, sheet);
-    fill(place, x, y + wide + gap, x + wide, place->view.height, sheet);
-    fill(place, 0, y, x - gap, y + wide, sheet);
-    fill(place, x + wide + gap, y, place->view.width, y + wide, sheet);
+    const double right = place->view.width, bottom = place->view.height;
+    const double edge = 1.5 * gap; /* where letters may stand */
+    fill(place, x, edge, x + wide, y - gap, sheet);
+    fill(place, x, y + wide + gap, x + wide, bottom - edge, sheet);
+    fill(place, edge, y, x - gap, y + wide, sheet);
+    fill(place, x + wide + gap, y, right - edge, y + wide, sheet);
 }
 
 snow_status snow_slice_lay(const snow_image *slice,
