@@ -222,6 +222,7 @@ snow_status snow_slice_shown(const snow_volume *volume,
 
 /* Lines through a point, which leave it free: of a picture's shorter side. */
 #define CROSS_GAP 0.03
+#define LETTERS_LEAST 64
 static const float cross_color[4] = {0.25F, 0.9F, 0.35F, 1};
 
 static float *pixel_at(const snow_image *image, int x, int y) {
@@ -249,7 +250,8 @@ static void draw_cross(const snow_slice_place *place, snow_image *sheet) {
     const double x = floor(place->cross[0] - (wide - 1) / 2);
     const double y = floor(place->cross[1] - (wide - 1) / 2);
     const double right = place->view.width, bottom = place->view.height;
-    const double edge = 1.5 * gap; /* where letters may stand */
+    /* Where letters may stand, which smaller pictures have none of. */
+    const double edge = side < LETTERS_LEAST ? 0 : 1.5 * gap;
     fill(place, x, edge, x + wide, y - gap, sheet);
     fill(place, x, y + wide + gap, x + wide, bottom - edge, sheet);
     fill(place, edge, y, x - gap, y + wide, sheet);
