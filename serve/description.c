@@ -127,6 +127,7 @@ void answer_info(drawing *d, outbox *box) {
     json_object_set_new(tree, "live", json_boolean(d->live));
     json_object_set_new(tree, "instance", json_string(identity_of_program()));
     json_object_set_new(tree, "file", json_string(d->identity));
+    json_object_set_new(tree, "opened", json_integer(d->opened));
     json_object_set_new(tree, "value_unit", json_string(info->value_unit));
     json_object_set_new(tree, "window",
                         json_pack("[f,f]", window[0], window[1]));

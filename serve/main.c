@@ -9,15 +9,16 @@
  * it (ranks.c). */
 #include "answers.h"
 #include "draw/ranks.h"
+#include "folder/folder.h"
 #include "live.h"
 #include "message.h"
 #include "net/listen.h"
+#include "recipe_file.h"
 #include "render.h"
 
 #include "commands/commands.h"
 #include "commands/first.h"
 #include "movie/series.h"
-#include "options/config.h"
 #include "run/log.h"
 
 #include <errno.h>
@@ -44,7 +45,9 @@ typedef struct viewer {
     renderer *renderer;
     pthread_t thread; /* of the listener */
     drawing drawing;
-    live *live; /* in its place; or NULL */
+    bool lists; /* a folder, of which a page chooses a volume */
+    live *live;     /* in its place; or NULL */
+    folder *folder; /* of which pages choose a volume; or NULL */
 } viewer;
 
 /* A signal ends the serving in order. */
@@ -121,17 +124,6 @@ static int read_options(options *opts, int argc, char **argv) {
     return done == CONTINUE ? check_settings(opts) : done;
 }
 
-/* The recipe that the page begins with. */
-static json_t *first_recipe(const options *opts) {
-    json_t *tree = config_tree(opts, verb_of(VERB_RENDER));
-    static const char *const unwanted[] = {"input",     "output",  "depth",
-                                           "verb",      "version", "quality",
-                                           "overwrite", "bits"};
-    for (size_t i = 0; i < sizeof unwanted / sizeof *unwanted; i++)
-        json_object_del(tree, unwanted[i]);
-    return tree;
-}
-
 /* By an error number; others than these come from what did work. */
 static int fail_start(int number) {
     if (number != EAGAIN && number != EMFILE && number != ENFILE)
@@ -147,7 +139,7 @@ static int fail_start(int number) {
 static int open_door(viewer *v, const json_t *recipe) {
     options *opts = &v->opts;
     int done = secret_make(opts, &v->guard);
-    if (done == CONTINUE && !opts->live)
+    if (done == CONTINUE && !opts->live && !v->lists)
         done = check_input(opts);
     if (done == CONTINUE)
         done = sockets_open(opts, &v->guard, &v->sockets);
@@ -170,6 +162,24 @@ static int open_live(viewer *v) {
     return done;
 }
 
+/* What the list has is looked at when pages can connect. */
+static int open_list(viewer *v) {
+    options *opts = &v->opts;
+    int done = folder_check(opts);
+    if (done == CONTINUE)
+        done = look_load(opts);
+    json_t *recipe = done == CONTINUE ? recipe_first(opts) : NULL;
+    if (done == CONTINUE)
+        done = open_door(v, recipe);
+    json_decref(recipe);
+    if (done == CONTINUE)
+        done = drawing_wait(opts, &v->drawing);
+    errno = 0;
+    if (done == CONTINUE)
+        v->folder = folder_new(opts, v->box);
+    return done == CONTINUE && !v->folder ? fail_start(errno) : done;
+}
+
 static int open_all(viewer *v) {
     options *opts = &v->opts;
     snow_comm *comm = process_ranks() > 1 ? process_comm() : NULL;
@@ -182,7 +192,7 @@ static int open_all(viewer *v) {
         first_settle(opts);
     if (done == CONTINUE)
         done = look_load(opts); /* on every rank: the file is small */
-    json_t *recipe = done == CONTINUE ? first_recipe(opts) : NULL;
+    json_t *recipe = done == CONTINUE ? recipe_first(opts) : NULL;
     if (done == CONTINUE && process_talks())
         done = open_door(v, recipe);
     done = process_agree(done);
@@ -219,7 +229,8 @@ static int print_url(const viewer *v) {
 /* Ends the drawing when it ends itself. */
 static void *listen_to_pages(void *user) {
     viewer *v = user;
-    listener_run(v->listener, v->state, v->box);
+    listener_run(v->listener, v->state, v->box, v->folder ? folder_hear : NULL,
+                 v->folder);
     state_end(v->state);
     return NULL;
 }
@@ -252,16 +263,20 @@ static int draw_all(viewer *v) {
 
 static int serve(viewer *v) {
     watch_signals(v->listener);
-    renderer_begin(&v->drawing, v->state, v->box);
+    if (!v->folder)
+        renderer_begin(&v->drawing, v->state, v->box);
     int done = print_url(v);
     if (done != SNOW_STATUS_OK)
         return done;
+    const renderer_opener opener = {folder_choose, folder_opened, v->folder};
     errno = 0;
     v->pack = packer_new(v->box);
     if (v->pack)
-        v->renderer = renderer_new(&v->drawing, v->state, v->box, v->pack);
+        v->renderer = renderer_new(&v->drawing, v->state, v->box, v->pack,
+                                   v->folder ? &opener : NULL);
     say_to(show_line, v->box);
-    if (v->renderer && start_listening(v))
+    if (v->renderer && (!v->folder || folder_start(v->folder)) &&
+        start_listening(v))
         return draw_all(v);
     int number = errno;
     say_to(NULL, NULL);
@@ -300,10 +315,11 @@ static void close_all(viewer *v) {
         packer_end(v->pack);
     renderer_free(v->renderer);
     packer_free(v->pack);
+    drawing_close(&v->drawing);
+    folder_free(v->folder);
     listener_free(v->listener);
     outbox_free(v->box);
     state_free(v->state);
-    drawing_close(&v->drawing);
     live_free(v->live);
     look_unload(&v->opts);
     sockets_close(&v->sockets);
@@ -315,7 +331,10 @@ int tool_run(int argc, char **argv, const process_start *how) {
     int done = process_meet(read_options(&v.opts, argc, argv), VERB_SERVE, 0);
     if (done != CONTINUE)
         return done;
-    done = v.opts.live ? open_live(&v) : open_all(&v);
+    v.lists = folder_is_meant(&v.opts);
+    done = v.opts.live ? open_live(&v)
+           : v.lists   ? process_agree(open_list(&v))
+                       : open_all(&v);
     if (done == CONTINUE && v.live) {
         done = serve_live(&v);
     } else if (done == CONTINUE && !process_talks()) {

@@ -46,3 +46,13 @@ json_t *recipe_file_tree(const drawing *d) {
         shorten(json_object_get(tree, keys[i]), folder);
     return tree;
 }
+
+json_t *recipe_first(const options *opts) {
+    json_t *tree = config_tree(opts, verb_of(VERB_RENDER));
+    static const char *const unwanted[] = {"input",     "output",  "depth",
+                                           "verb",      "version", "quality",
+                                           "overwrite", "bits"};
+    for (size_t i = 0; i < sizeof unwanted / sizeof *unwanted; i++)
+        json_object_del(tree, unwanted[i]);
+    return tree;
+}

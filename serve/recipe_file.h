@@ -1,4 +1,5 @@
-/* recipe_file.h - the recipe of the picture at rest, as a file for --config. */
+/* recipe_file.h - the recipe that pages begin with; that of the picture at rest,
+ * as a file for --config. */
 #ifndef RECIPE_FILE_H
 #define RECIPE_FILE_H
 
@@ -8,5 +9,8 @@
  * volume's folder, as the file is meant to lie beside the volume; a path that
  * begins with / and leads elsewhere stays.  NULL: no memory. */
 json_t *recipe_file_tree(const drawing *d);
+
+/* The state that pages begin with; NULL: no memory. */
+json_t *recipe_first(const options *opts);
 
 #endif

@@ -3,6 +3,7 @@
 #include "answers.h"
 #include "draw/draft.h"
 #include "draw/share.h"
+#include "draw/shortage.h"
 
 #include "commands/commands.h"
 #include "picture/warnings.h"
@@ -29,6 +30,7 @@ struct renderer {
     bool reported_empty;
     char replaced[IDENTITY_BYTES]; /* the file by which it was, as was said */
     bool reopened;
+    renderer_opener opener; /* of another volume; NULLs: there is none */
     double radius; /* of the volume that was read last */
 };
 
@@ -167,37 +169,13 @@ static void make_room(renderer *r) {
     drawing_empty(r->drawing);
 }
 
-/* The quality and all of a recipe but where a turn is, which changes nothing of
- * the memory that a picture needs. */
-static json_t *need_of(const json_t *recipe, int level) {
-    static const char *const turns[] = {"azimuth", "elevation", "roll"};
-    json_t *need = json_copy((json_t *)recipe);
-    for (size_t i = 0; i < sizeof turns / sizeof *turns; i++)
-        json_object_del(need, turns[i]);
-    json_object_set_new(need, "quality", json_integer(level));
-    return need;
-}
-
-/* In words of a page, whose window is the size. */
-static void say_no_room(const renderer *r, int level) {
-    const options *opts = &r->drawing->opts;
-    char limit[80] = "memory that there is";
-    if (opts->memory > 0)
-        snprintf(limit, sizeof limit, "--memory of %.1f MiB",
-                 (double)opts->memory / (1 << 20));
-    say("there is no room for %s of %lld x %lld pixels in the %s: make the "
-        "window smaller, crop the volume, or begin with more memory",
-        level == 2 ? "the final picture" : "a picture",
-        (long long)opts->size[0], (long long)opts->size[1], limit);
-}
-
 static outcome draw_emptied(renderer *r, int level, const json_t *recipe) {
     make_room(r);
     say_later();
     outcome o = try_state(r, level, recipe, true);
     say_now(o.done == SNOW_STATUS_NO_MEMORY);
     json_decref(r->vain);
-    r->vain = o.done == SNOW_STATUS_NO_MEMORY ? need_of(recipe, level) : NULL;
+    r->vain = o.done == SNOW_STATUS_NO_MEMORY ? shortage_need(recipe, level) : NULL;
     return o;
 }
 
@@ -212,25 +190,21 @@ static outcome draw_state(renderer *r, int level, const json_t *recipe,
     bool is_short = one && o.done == SNOW_STATUS_NO_MEMORY;
     say_now(is_short);
     if (is_short) {
-        json_t *need = need_of(recipe, level);
+        json_t *need = shortage_need(recipe, level);
         const bool in_vain = r->vain && json_equal(need, r->vain);
         json_decref(need);
         if (!in_vain)
             o = draw_emptied(r, level, recipe);
     }
     if (one && o.done == SNOW_STATUS_NO_MEMORY)
-        say_no_room(r, level);
+        shortage_say(&r->drawing->opts, level);
     return o;
-}
-
-static bool try_answer(renderer *r, const viewer_question *question) {
-    return answer_question(r->drawing, r->state, r->box, question) !=
-           SNOW_STATUS_NO_MEMORY;
 }
 
 static bool reopens(renderer *r, const json_t *question) {
     const char *what = json_string_value(json_object_get(question, "what"));
-    if (strcmp(what, "reopen") != 0 || process_ranks() > 1)
+    if (strcmp(what, "reopen") != 0 || process_ranks() > 1 ||
+        r->drawing->waits)
         return false;
     make_room(r);
     identity_of(r->drawing->opts.operands[0], r->drawing->identity);
@@ -240,19 +214,86 @@ static bool reopens(renderer *r, const json_t *question) {
     return true;
 }
 
+/* Takes over the recipe. */
+static void take_volume(renderer *r, json_t *recipe) {
+    double middle[3];
+    drawing *d = r->drawing;
+    d->waits = false;
+    d->opened++;
+    state_replace(r->state, recipe);
+    renderer_begin(d, r->state, r->box);
+    tell_state(r);
+    json_decref(r->good);
+    json_decref(r->vain);
+    r->good = state_recipe(r->state);
+    r->vain = NULL;
+    r->reported_empty = false;
+    r->replaced[0] = 0;
+    drawing_middle(d, middle, &r->radius);
+}
+
+/* Another volume in the place of the one before, which comes back where the
+ * other cannot be opened. */
+static bool switch_volume(renderer *r, const json_t *question) {
+    static options before; /* large; one thread draws */
+    const options *first;
+    const json_t *recipe;
+    drawing *d = r->drawing;
+    if (r->opener.choose(r->opener.user, question, &first, &recipe) != CONTINUE)
+        return false;
+    before = d->first;
+    make_room(r);
+    const bool good = drawing_switch(d, first, recipe) == CONTINUE;
+    if (!good) {
+        make_room(r);
+        d->first = before;
+    }
+    json_t *begun = good ? json_deep_copy(recipe) : NULL;
+    r->opener.opened(r->opener.user, good);
+    if (good)
+        take_volume(r, begun);
+    else if (!d->waits) {
+        say_later();
+        (void)drawing_switch(d, &before, r->good);
+        say_now(true);
+    }
+    r->level = -1;
+    return good;
+}
+
+static bool opens(renderer *r, const viewer_question *question) {
+    const char *what =
+        json_string_value(json_object_get(question->tree, "what"));
+    if (strcmp(what, "open") != 0 || !r->opener.choose)
+        return false;
+    const bool good = switch_volume(r, question->tree);
+    answer_put(r->box, question->client, MESSAGE_PLAIN,
+               json_pack("{s:s, s:b}", "t", "opened", "good", (int)good));
+    return true;
+}
+
 static void serve_answer(renderer *r, const viewer_question *question) {
-    if (reopens(r, question->tree)) {
+    if (reopens(r, question->tree) || opens(r, question)) {
+        json_decref(question->tree);
+        return;
+    }
+    if (r->drawing->waits) {
+        answer_none(r->box, question->client, question->tree);
+        answer_said(r->box, question->client,
+                    "Nothing is open yet: choose a volume.");
         json_decref(question->tree);
         return;
     }
     const bool again = process_ranks() == 1;
     if (again)
         say_later();
-    bool answered = try_answer(r, question);
+    bool answered = answer_question(r->drawing, r->state, r->box, question) !=
+                    SNOW_STATUS_NO_MEMORY;
     say_now(again && !answered);
     if (again && !answered) {
         make_room(r);
-        answered = try_answer(r, question);
+        answered = answer_question(r->drawing, r->state, r->box, question) !=
+                   SNOW_STATUS_NO_MEMORY;
         if (!r->drawing->state.volume)
             r->level = -1; /* a picture opens it again, or says why not */
     }
@@ -289,6 +330,13 @@ static void note_recipe(renderer *r, const outcome *o, json_t *recipe) {
 /* A state that cannot be drawn is not tried again. */
 static void serve_state(renderer *r, int level, json_t *recipe,
                         uint32_t revision) {
+    if (r->drawing->waits) {
+        state_note_rest(r->state, recipe, revision);
+        json_decref(recipe);
+        r->drawn = revision;
+        r->level = 2;
+        return;
+    }
     const bool anew = r->drawn != revision || r->level < 0;
     const bool beside = !anew && r->level == 2; /* another page's size */
     r->revision = revision;
@@ -357,13 +405,16 @@ static bool show_progress(void *user, snow_stage stage, double fraction) {
     return state_has_ended(r->state);
 }
 
-renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack) {
+renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack,
+                       const renderer_opener *opener) {
     double middle[3];
     renderer *r = malloc(sizeof *r);
     if (!r)
         return NULL;
     *r = (renderer){
         .drawing = d, .state = s, .box = box, .pack = pack, .level = -1};
+    if (opener)
+        r->opener = *opener;
     r->good = state_recipe(s);
     drawing_middle(d, middle, &r->radius);
     snow_context_set_progress(d->state.context, show_progress, r);

@@ -15,8 +15,19 @@ typedef struct renderer renderer;
  * what pages are told of it waits for them. */
 void renderer_begin(drawing *d, viewer_state *s, outbox *box);
 
-/* Takes over the drawing; NULL: no memory. */
-renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack);
+/* How another volume is opened: what a question {"what": "open", ...} of a page
+ * means, and then whether it could be; see folder/folder.h. */
+typedef struct renderer_opener {
+    int (*choose)(void *user, const json_t *question, const options **first,
+                  const json_t **recipe);
+    void (*opened)(void *user, bool good);
+    void *user;
+} renderer_opener;
+
+/* Takes over the drawing.  `opener`: or NULL, where there is nothing else to be
+ * opened.  NULL: no memory. */
+renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack,
+                       const renderer_opener *opener);
 
 /* Does what is to be done next, and says what that was.  Waits for it where due
  * is NULL, until WORK_END (state_next). */

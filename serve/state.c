@@ -13,6 +13,13 @@ double state_seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+void state_note_files(viewer_state *s) {
+    json_object_clear(s->files);
+    for (size_t i = 0; message_switches(i); i++)
+        json_object_set(s->files, message_switches(i),
+                        json_object_get(s->recipe, message_switches(i)));
+}
+
 viewer_state *state_new(json_t *recipe) {
     pthread_condattr_t monotonic;
     viewer_state *s = calloc(1, sizeof *s);
@@ -28,9 +35,7 @@ viewer_state *state_new(json_t *recipe) {
     s->recipe = recipe;
     s->files = json_object();
     s->look.written = json_object();
-    for (size_t i = 0; message_switches(i); i++)
-        json_object_set(s->files, message_switches(i),
-                        json_object_get(recipe, message_switches(i)));
+    state_note_files(s);
     atomic_init(&s->revision, 1);
     return s;
 }

@@ -35,6 +35,9 @@ struct viewer_state {
     snow_context *checker; /* of the thread that sets */
 };
 
+/* The files that pages switch are those of the recipe now. */
+void state_note_files(viewer_state *s);
+
 /* Of the monotonic clock. */
 double state_seconds(void);
 

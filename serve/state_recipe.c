@@ -194,6 +194,22 @@ bool state_take_back(viewer_state *s, uint32_t revision, const json_t *drawn) {
     return other;
 }
 
+void state_replace(viewer_state *s, json_t *recipe) {
+    pthread_mutex_lock(&s->lock);
+    if (json_object_get(s->recipe, "size"))
+        json_object_set(recipe, "size", json_object_get(s->recipe, "size"));
+    json_decref(s->recipe);
+    kept_look_free(&s->look);
+    s->recipe = recipe;
+    s->look = (kept_look){.written = json_object()};
+    state_note_files(s);
+    s->touched = s->crop_is_alone = false;
+    s->changed_at = state_seconds();
+    s->revision++;
+    pthread_cond_signal(&s->changed);
+    pthread_mutex_unlock(&s->lock);
+}
+
 json_t *state_recipe(viewer_state *s) {
     pthread_mutex_lock(&s->lock);
     json_t *copy = json_deep_copy(s->recipe);

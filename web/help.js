@@ -67,6 +67,9 @@ const KEYS = [['Drag', 'turn'], ['Shift or middle drag', 'move'], ['Wheel', 'zoo
     ['c v', 'the command, that of a movie'], ['s', 'save the picture'], ['z Shift+z', 'undo, redo; Ctrl+z, Ctrl+y too'],
     ['?', 'this help']];
 
+/** Where there is a list of volumes. */
+const FOLDER_KEYS = [['o', 'open another volume'], ['n Shift+n', 'the next volume, the one before']];
+
 /** What a section says; the last is of patients alone.
  * @type {[name: string, text: string, patient?: string][]} */
 const GUIDE = [
@@ -97,6 +100,6 @@ export function help(store) {
     const guide = GUIDE.map(([name, text, patient]) => make('section', {}, make('h3', {textContent: name}),
         make('p', {textContent: [text, ...store.info?.medical && patient ? [patient] : []].join(' ')})));
     return [...guide, make('h3', {textContent: 'Mouse, fingers and keys'}), label,
-        make('table', {}, ...KEYS.map(([key, text]) => make('tr', {},
+        make('table', {}, ...[...KEYS, ...store.info?.opened ? FOLDER_KEYS : []].map(([key, text]) => make('tr', {},
             make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: text}))))];
 }

@@ -122,6 +122,16 @@ export class Store {
         this.changed();
     }
 
+    /** Another volume is open: nothing of the one before is left but the window. */
+    renew() {
+        this.keys = this.size ? {size: this.size} : {};
+        this.computed = {};
+        this.answered = this.histogram = this.rest = null;
+        this.before = [];
+        this.after = [];
+        this.part();
+    }
+
     /** What follows is a step of its own, however soon it comes. */
     part() {
         this.last = {names: '', at: 0};

@@ -53,7 +53,7 @@ export type Info = {
     presets: [name: string, text: string][], colormaps: string[], tf: boolean, fov: number,
     channels?: string[], keys?: string[], mask?: boolean, overlay?: string | null, labels?: string | null,
     slices?: SliceInfo[] | null, live?: boolean, instance?: string, file?: string, window: Pair,
-    hounsfield?: boolean, value_unit?: string};
+    hounsfield?: boolean, value_unit?: string, opened?: number};
 
 export type Label = [value: number, name: string, color: string, opacity: number];
 /** One that is drawn alone has no map. */
@@ -76,6 +76,16 @@ export type Result = {kind: string, points: Vector[], length?: number, degrees?:
 /** What lies at a voxel, or how far the surface is. */
 export type Probe = {n: number, value?: number | null, depth?: number | null};
 
+/** The list of a folder: how many entries, and which is open. */
+export type Listed = {name: string, count: number, others: number, beyond: number, faults: number, done: boolean,
+    open: number | null};
+
+/** An entry of it.  Of a fault `text` says why, of a recipe its volume. */
+export type Entry = {
+    kind: 'volume' | 'recipe' | 'fault', name: string, series: string, day: string, bytes: number, changed: number,
+    text?: string, dims?: number[], type?: string, format?: string, times?: number, modality?: string,
+    description?: string};
+
 /** A picture, or that of a pane. */
 export type Frame = {
     n: number, level: number, kind: number, pane: number, width: number, height: number,
@@ -88,7 +98,9 @@ export type Heard = {
     command: {text: string}, recipe: {text: string}, progress: {stage: string, part: number},
     figures: {sparse: number | null, method: string}, step: {step: number}, slice: {pane: number},
     value: {at: number[], value: number | null}, depth: {x: number, y: number, depth: number | null},
-    replaced: {gone: boolean, again: boolean}, measures: {of: string, measures: Result[]}, probe: Probe};
+    replaced: {gone: boolean, again: boolean}, measures: {of: string, measures: Result[]}, probe: Probe,
+    folder: Listed, entries: {from: number, entries: Entry[]}, cover: {entry: number, image: string | null},
+    opened: {good: boolean}};
 
 /** The renderer, wherever it is. */
 export interface Engine {
@@ -107,7 +119,8 @@ export type Actions = {
     view(name: string): void, measure(tool: string | null): void, length(): void, angle(): void, ellipse(): void,
     fit(): void, mode(): void, perspective(): void, letters(): void, play(): void,
     drag(): void, slices(): void, handles(): void, command(): void, movie(): void, link(): void, file(): void,
-    save(): void, reset(): void, undo(): void, redo(): void, help(): void};
+    save(): void, reset(): void, undo(): void, redo(): void, help(): void,
+    open(): void, next(): void, previous(): void};
 
 /** What an element is listened to by; one that returns true has done all. */
 export type Hearer = {

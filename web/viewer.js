@@ -4,6 +4,7 @@
 import {button, context, make, select, tip} from './controls.js';
 import {ServerEngine} from './engine_server.js';
 import {aimed, unproject} from './camera.js';
+import {Folder} from './folder.js';
 import {Hints, help} from './help.js';
 import {MODES, listenToKeys} from './keys.js';
 import {MEASURES, Measure} from './measure.js';
@@ -179,7 +180,8 @@ const actions = {
     link() {
         const url = new URL(location.href);
         const {size, ...keys} = store.keys; // all of them: elsewhere no look was before
-        url.hash = `${new URLSearchParams({token: engine.token, recipe: JSON.stringify(keys)})}`;
+        const volume = folder.current, text = {token: engine.token, recipe: JSON.stringify(keys)};
+        url.hash = `${new URLSearchParams(volume ? {...text, volume: JSON.stringify(volume)} : text)}`;
         copy('Link to this state', url.href);
     },
     file: () => engine.ask('recipe'),
@@ -192,6 +194,9 @@ const actions = {
     reset() {
         store.replace(begin);
     },
+    open: () => folder.listed ? folder.open() : chooseFile(),
+    next: () => folder.step(1),
+    previous: () => folder.step(-1),
     undo: () => store.undo() || say('Nothing to undo'),
     redo: () => store.redo() || say('Nothing to redo'),
     help: () => open('Help', ...help(store)),
@@ -309,7 +314,7 @@ function ready() {
             each.disabled = false;
     sliced.hidden = filmed.hidden = !info?.slices;
     commanded.hidden = Boolean(info?.live);
-    chooser.hidden = !info?.keys;
+    chooser.hidden = !info?.keys && !folder.listed;
     describe();
 }
 
@@ -347,7 +352,9 @@ const measure = new Measure(store, pointer, slices, views, () => actions.measure
 const panel = new Panel(store, actions, slices, measure);
 const overlay = new Overlay(store, pointer, slices);
 const hints = new Hints(store);
+const folder = new Folder(store, chooseFile);
 picture.append(measure.canvas, ...overlay.elements, hints.element);
+let renewed = false; // another volume of a folder is open, whose state follows
 let first = true, fresh = true; // the first state of all, and of a connection
 /** What the page began with.
  * @type {Keys} */
@@ -408,6 +415,11 @@ engine.on('info', info => {
     const before = store.info, part = before !== null && before.file === info.file; // of the same volume
     if (before)
         returns ??= {other: before.instance !== info.instance, same: part && before.name === info.name};
+    if (info.opened && (!before || info.opened !== before.opened || info.instance !== before.instance)) {
+        renewed = true;
+        store.renew();
+        say('');
+    }
     store.info = info;
     document.title = `${info.name} - snowglass`;
     title.textContent = `${info.name}  ${info.dims.join(' x ')}${info.live ? '' : ` ${info.type}`}, ` +
@@ -420,21 +432,35 @@ engine.on('info', info => {
     engine.ask('histogram');
     ready();
 });
+/** The state of a link, or hints: once, and when there is a volume.
+ * @param {boolean|undefined} touched */
+function greet(touched) {
+    if (!store.info || !greeting)
+        return;
+    greeting = false;
+    const link = given.get('recipe');
+    if (link)
+        openLink(link);
+    else if (touched === false && !store.info.live)
+        hints.show(0); // nobody has used this viewer yet
+}
+
+let greeting = true;
 engine.on('state', ({touched}) => {
     const begins = first;
-    if (!fresh)
+    if (!fresh && !renewed)
         return;
-    if (first)
+    if (first || renewed)
         begin = store.own;
-    first = fresh = false;
+    const again = fresh && !first && !renewed;
+    first = fresh = renewed = false;
     fitWindow(true);
-    if (!begins)
+    if (again)
         returned(touched);
-    const link = given.get('recipe');
-    if (begins && link)
-        openLink(link);
-    else if (begins && touched === false && !store.info?.live)
-        hints.show(0); // nobody has used this viewer yet
+    if (begins)
+        folder.want(given.get('volume'));
+    if (!folder.wanted)
+        greet(touched);
 });
 store.onChange(() => {
     panel.update();
@@ -448,9 +474,14 @@ const tool = select([...TOOLS, ...MEASURES], name => {
 });
 const sliced = button('Slices', 'Three slices beside the picture (x)', actions.slices);
 const file = make('input', {type: 'file', onchange: () => shared.take(file.files ?? [])});
-const chooser = button('Open', 'Open a recipe, or drop it on the page', () => {
+const chooser = button('Open', 'Open a recipe, or drop it on the page', () => actions.open());
+function chooseFile() {
     file.value = ''; // the same one may be chosen again
     file.click();
+}
+engine.on('folder', () => {
+    chooser.hidden = false;
+    tip(chooser, 'Open another volume of the folder, or a recipe (o)');
 });
 const commanded = button('Command', 'Copy the command that makes this picture (c)', actions.command);
 const filmed = button('Movie', 'Copy the command that makes a movie of a turn (v)',
@@ -465,11 +496,11 @@ for (const each of buttons.querySelectorAll('button'))
     each.disabled = true;
 document.getElementById('viewer')?.append(
     make('section', {className: 'stage', 'aria-label': 'Picture'},
-        make('div', {className: 'top'}, make('h1', {textContent: 'snowglass'}), title, level, chooser,
+        make('div', {className: 'top'}, make('h1', {textContent: 'snowglass'}), title, level, folder.buttons, chooser,
             button('Help', 'A short guide, and all keys (?)', actions.help)),
         views,
         make('div', {className: 'bottom'}, figures, buttons)),
-    panel.element, dialog);
+    panel.element, folder.element, dialog);
 listenToKeys(store, actions, pointer);
 new ResizeObserver(() => {
     overlay.draw();

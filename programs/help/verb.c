@@ -80,7 +80,7 @@ static const struct {
       "    ffmpeg -f rawvideo -pix_fmt rgb24 -s 512x512 -r 25 -i - run.mkv",
       "snowglass movie heart.nii.gz -o heart.gif --fps 10 --annotate step"}},
     {VERB_SERVE,
-     {"snowglass serve head.nii.gz",
+     {"snowglass serve study/",
       "snowglass serve ct.nrrd --preset ct-bone --listen :8000",
       "snowglass serve run.nrrd --listen "
       "unix:$XDG_RUNTIME_DIR/snowglass.sock"}},

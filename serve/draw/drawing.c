@@ -329,6 +329,22 @@ int drawing_open(const options *first, json_t *recipe, drawing *out) {
     return done == CONTINUE ? apply(out, recipe) : done;
 }
 
+int drawing_wait(const options *first, drawing *out) {
+    *out = (drawing){.first = *first,
+                     .opts = *first,
+                     .waits = true,
+                     .slice_layers = {.keeps = true, .alone = true}};
+    int done = render_state_new(&out->opts, &out->state);
+    out->state.layers.keeps = true;
+    return done;
+}
+
+int drawing_switch(drawing *d, const options *first, const json_t *recipe) {
+    d->first = *first;
+    identity_of(first->operands[0], d->identity);
+    return drawing_apply(d, recipe);
+}
+
 void drawing_empty(drawing *d) {
     render_state *s = &d->state;
     drop_frame(d);
@@ -389,25 +405,4 @@ json_t *drawing_fit(drawing *d) {
         view.target[i] = rounded(view.target[i]);
     return json_pack("{s:f, s:o, s:s}", "zoom", rounded(view.zoom * margin),
                      "target", json_vector(view.target, 3), "fit", "volume");
-}
-
-void drawing_middle(const drawing *d, double middle[3], double *radius) {
-    const snow_volume_info *info = &d->state.whole;
-    double square[4] = {0};
-    for (int i = 0; i < 3; i++) {
-        middle[i] = info->matrix[i][3];
-        for (int k = 0; k < 3; k++)
-            middle[i] += info->matrix[i][k] * (double)(info->dims[k] - 1) / 2;
-    }
-    for (int corner = 0; corner < 4; corner++)
-        for (int i = 0; i < 3; i++) {
-            double along = 0;
-            for (int k = 0; k < 3; k++)
-                along += (k && corner & k ? -1 : 1) * info->matrix[i][k] *
-                         (double)info->dims[k] / 2;
-            square[corner] += along * along;
-        }
-    *radius = 0;
-    for (int corner = 0; corner < 4; corner++)
-        *radius = fmax(*radius, sqrt(square[corner]));
 }

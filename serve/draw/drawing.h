@@ -61,6 +61,8 @@ struct drawing {
                         clip planes */
     kept_values values;
     bool volume_is_new, look_is_new; /* since the caller last looked */
+    bool waits; /* nothing is open yet: a page chooses a volume of a folder */
+    int opened; /* how many were chosen so */
     bool live; /* a simulation draws it: nothing but grid and look is known */
     snow_transfer *slice_look;            /* of the last slice (slices.h) */
     channel_set slice_channels;           /* and of its channels */
@@ -82,6 +84,12 @@ struct drawing {
  * exit code, as all functions here do. */
 int drawing_open(const options *first, json_t *recipe, drawing *out);
 void drawing_close(drawing *d);
+
+/* Not for many ranks.  A drawing of nothing yet; then of a volume in the place of
+ * what was open, which drawing_empty has freed.  Options, and what they name,
+ * stay the caller's while it is drawn. */
+int drawing_wait(const options *first, drawing *out);
+int drawing_switch(drawing *d, const options *first, const json_t *recipe);
 
 /* By all ranks.  Makes what a recipe needs, whose tree stays the caller's. */
 int drawing_apply(drawing *d, const json_t *recipe);
@@ -107,10 +115,6 @@ void drawing_options(const drawing *d, options *out);
 /* Options as recipes have them: which channels are meant.  A list replaces the
  * file of --tf, and gives way to its first one where it cannot be mixed. */
 int drawing_settle_channels(options *opts);
-
-/* The middle of the volume, and from there to its farthest corner: what zoom 1
- * shows (snowglass/view.h). */
-void drawing_middle(const drawing *d, double middle[3], double *radius);
 
 /* By all ranks.  Frames what the look shows, from the sides of a turn: keys
  * that set the camera's target and zoom, a new reference. */
@@ -139,6 +143,10 @@ snow_status drawing_new_transfer(drawing *d, const snow_look *look,
 /* "head.png" for /data/head.nii.gz and phantom:head; of a slice
  * "head-axial.png". */
 void drawing_name_output(const char *input, const char *slice, char out[100]);
+
+/* The middle of the volume, and from there to its farthest corner: what zoom 1
+ * shows (snowglass/view.h). */
+void drawing_middle(const drawing *d, double middle[3], double *radius);
 
 /* The command that makes the picture at rest (VERB_RENDER), or the movie of a
  * turn that begins with it (VERB_TURNTABLE), to be freed. */

@@ -165,3 +165,24 @@ char *drawing_command(const drawing *d, unsigned verb) {
     json_decref(tree);
     return text;
 }
+
+void drawing_middle(const drawing *d, double middle[3], double *radius) {
+    const snow_volume_info *info = &d->state.whole;
+    double square[4] = {0};
+    for (int i = 0; i < 3; i++) {
+        middle[i] = info->matrix[i][3];
+        for (int k = 0; k < 3; k++)
+            middle[i] += info->matrix[i][k] * (double)(info->dims[k] - 1) / 2;
+    }
+    for (int corner = 0; corner < 4; corner++)
+        for (int i = 0; i < 3; i++) {
+            double along = 0;
+            for (int k = 0; k < 3; k++)
+                along += (k && corner & k ? -1 : 1) * info->matrix[i][k] *
+                         (double)info->dims[k] / 2;
+            square[corner] += along * along;
+        }
+    *radius = 0;
+    for (int corner = 0; corner < 4; corner++)
+        *radius = fmax(*radius, sqrt(square[corner]));
+}

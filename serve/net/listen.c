@@ -35,6 +35,8 @@ struct listener {
     uint64_t last_id;
     struct lws *silent[LISTEN_SILENT_MOST]; /* the oldest first */
     int silent_count;
+    listener_hear *hear; /* or NULL */
+    void *hearer;
     double idle;
     lws_sorted_usec_list_t idle_timer;
     atomic_bool ended;
@@ -161,6 +163,7 @@ static int greet(listener *l, client *c, const message *m) {
     c->webp = m->webp;
     c->next = l->clients;
     l->clients = c;
+    queue_newest(l, c, MESSAGE_FOLDER);
     queue_newest(l, c, MESSAGE_INFO);
     queue_newest(l, c, MESSAGE_LOOK);
     queue_newest(l, c, MESSAGE_FIGURES);
@@ -221,7 +224,8 @@ static int take(listener *l, client *c, message *m) {
         client_note_part(c);
         break;
     case MESSAGE_ASK:
-        if (!state_ask(l->state, c->id, sizes_ask(c, m->tree))) {
+        if (!(l->hear && l->hear(l->hearer, c->id, m->tree)) &&
+            !state_ask(l->state, c->id, sizes_ask(c, m->tree))) {
             answer_none(l->box, c->id, m->tree);
             answer_said(l->box, c->id, "ask: too many questions wait");
         }
@@ -425,7 +429,10 @@ void listener_wake(void *user) {
     lws_cancel_service(l->context);
 }
 
-void listener_run(listener *l, viewer_state *state, outbox *box) {
+void listener_run(listener *l, viewer_state *state, outbox *box,
+                  listener_hear *hear, void *hearer) {
+    l->hear = hear;
+    l->hearer = hearer;
     l->state = state;
     l->box = box;
     count_clients(l, 0);

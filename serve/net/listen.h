@@ -26,8 +26,12 @@ void listener_free(listener *l);
 /* Lets the serving thread know that messages wait, from any thread. */
 void listener_wake(void *listener);
 
-/* Serves until a signal comes, or no page was there for the idle time. */
-void listener_run(listener *l, viewer_state *state, outbox *box);
+/* Serves until a signal comes, or no page was there for the idle time.
+ * Questions go first to `hear`, if there is one, which says whether it has taken
+ * them. */
+typedef bool listener_hear(void *user, uint64_t client, const json_t *question);
+void listener_run(listener *l, viewer_state *state, outbox *box,
+                  listener_hear *hear, void *hearer);
 
 /* Ends listener_run, from any thread and from a signal's handler. */
 void listener_stop(listener *l);

@@ -19,6 +19,7 @@ typedef enum message_topic {
     MESSAGE_FIGURES,
     MESSAGE_PROGRESS,
     MESSAGE_COUNTS, /* of the values of a simulation */
+    MESSAGE_FOLDER, /* how far the list of a folder is */
     MESSAGE_PICTURE,
     MESSAGE_THIN_PICTURE, /* the same for pages on thin links */
     MESSAGE_TOPICS

@@ -184,6 +184,20 @@ def measured():
     plan("measures", name, "--opacity", "-1:1,400:1", copies=[PICTURE])
 
 
+def chosen():
+    """Volumes in a folder."""
+    place = os.path.join(shots, "volumes")
+    shutil.rmtree(place, ignore_errors=True)
+    os.makedirs(f"{place}/deep")
+    voxels = head("base.nrrd", 48, 40, 36)[2]
+    for name in ("v1", "v2", "v10", "deep/<b>v3"):
+        nrrd(f"{place}/{name}.nrrd", (48, 40, 36), voxels)
+    nrrd(f"{place}/cut.nrrd", (48, 40, 36), voxels[:999])
+    with open(f"{place}/warm.json", "w") as out:
+        json.dump({"input": "v2.nrrd", "azimuth": 33}, out)
+    plan("folder", place)
+
+
 HEAD = "phantom:head", "--dims", "64x64x64"  # a page waits for each picture of it
 if SHORT:
     plan("short", *HEAD, copies=[PICTURE])
@@ -197,6 +211,7 @@ else:
          os.path.join(shots, "head.nrrd"), "--labels", "60-255")
     plan("recipes", *HEAD)
     measured()
+    chosen()
     overlaid()
     mixed()
     filmed()

@@ -11,6 +11,7 @@ import {createServer, request} from 'node:http';
 import {connect} from 'node:net';
 import {readFileSync, writeFileSync} from 'node:fs';
 import {asked, restarted, steps} from './everyday.mjs';
+import {listed} from './folder.mjs';
 import {measures} from './measures.mjs';
 
 const [playwright, chromium, folder, ...parts] = process.argv.slice(2);
@@ -31,7 +32,7 @@ function check(what, good, why = '') {
 const browser = await browsers.launch({executablePath: chromium,
     args: ['--no-sandbox', '--disable-gpu', '--disable-software-rasterizer']});
 
-async function open(options = {}, address = part().url) {
+async function open(options = {}, address = part().url, waits = true) {
     const context = await browser.newContext({viewport: {width: 900, height: 560},
         acceptDownloads: true, ...options});
     const {said} = part(); // on the console, and against the policy
@@ -42,7 +43,8 @@ async function open(options = {}, address = part().url) {
     await page.addInitScript(() => document.addEventListener('securitypolicyviolation',
         event => console.log(`policy: ${event.violatedDirective}`)));
     await page.goto(address);
-    await rest(page);
+    if (waits) // there may be no picture yet
+        await rest(page);
     return page;
 }
 
@@ -1409,9 +1411,9 @@ async function more() {
     await page.context().close();
 }
 
-const tools = {answered, check, folder, keys, open, part, rest, slicesRest, wheel};
+const tools = {answered, check, folder, judged, keys, open, shot, part, rest, slicesRest, wheel};
 const known = {short: first, long: all, more, film, steps: () => steps(tools),
-    restarted: () => restarted(tools), asked: () => asked(tools), measures: () => measures(tools), embed: embedded, points: manyPoints, mask: masked,
+    restarted: () => restarted(tools), asked: () => asked(tools), measures: () => measures(tools), folder: () => listed(tools), embed: embedded, points: manyPoints, mask: masked,
     overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, plain: plainChannels, begun, many};
 
 async function run() {
