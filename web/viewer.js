@@ -181,7 +181,8 @@ const actions = {
         const url = new URL(location.href);
         const {size, ...keys} = store.keys; // all of them: elsewhere no look was before
         const volume = folder.current, text = {token: engine.token, recipe: JSON.stringify(keys)};
-        url.hash = `${new URLSearchParams(volume ? {...text, volume: JSON.stringify(volume)} : text)}`;
+        const words = volume ? {...text, volume: JSON.stringify(volume)} : text;
+        url.hash = `${new URLSearchParams(words)}`;
         copy('Link to this state', url.href);
     },
     file: () => engine.ask('recipe'),
