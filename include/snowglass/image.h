@@ -57,7 +57,7 @@ SNOW_API const char *snow_image_format_suffix(size_t index, bool *built);
 
 /* width * height * 3 bytes, the levels of a PNG of 8 bits on that background;
  * or with all options, on black unless `flatten`. */
-SNOW_API void snow_image_to_rgb8(
+SNOW_API snow_status snow_image_to_rgb8(
     const snow_image *image, const double background[3], unsigned char *rgb);
 SNOW_API snow_status snow_image_to_rgb8_with(const snow_image *image,
     const snow_image_options *options, unsigned char *rgb);

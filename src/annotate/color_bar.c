@@ -365,6 +365,10 @@ snow_status snow_overlay_color_bar(snow_overlay *overlay,
                                    const char *unit, const double range[2],
                                    int n, int count) {
     double height = snow_number_height(overlay), slot[2];
+    if (n < 0 || n >= count)
+        return snow_fail(overlay->context, SNOW_STATUS_BAD_USAGE,
+                         "there is no color bar %d of %d; count from 0", n,
+                         count);
     if (snow_shorter_side(overlay) < SNOW_BAR_SIDE_LEAST)
         return SNOW_STATUS_OK;
     find_slot(overlay, n, count, slot);

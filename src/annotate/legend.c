@@ -24,6 +24,12 @@ double snow_overlay_text_height(const snow_overlay *overlay) {
 snow_status snow_overlay_text(snow_overlay *overlay, double x, double y,
                               double share_x, double share_y, double height,
                               const char *text) {
+    if (!isfinite(x) || !isfinite(y) || !isfinite(share_x) ||
+        !isfinite(share_y) || !(height > 0) || !isfinite(height))
+        return snow_fail(overlay->context, SNOW_STATUS_BAD_USAGE,
+                         "a text %g pixels high at %g, %g: give finite places "
+                         "and a height above 0",
+                         height, x, y);
     double left = x - share_x * height * snow_font_width(text);
     double base = y + (1 - share_y) * height;
     if (!*text)

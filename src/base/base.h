@@ -70,6 +70,9 @@ struct snow_context {
 #define snow_release snow_context_release
 #define snow_reserve snow_context_reserve
 
+/* Refuses a path that is NULL. */
+snow_status snow_need_path(snow_context *context, const char *path);
+
 /* Puts "prefix: " before the message of a failure in a called function and
  * returns its status: each caller adds what it knows (the name of the
  * file, say). */
@@ -165,7 +168,8 @@ size_t snow_letter_bytes(const char *text, bool *control);
 bool snow_has_suffix(const char *text, const char *suffix);
 
 /* True if two names are equal to people: ignoring case, dashes and underscores
- * ("CT_Bone" is "ct-bone"), except for a leading sign ("-x" is not "x"). */
+ * ("CT_Bone" is "ct-bone"), except for a leading sign ("-x" is not "x").  NULL
+ * equals no name. */
 bool snow_same_name(const char *a, const char *b);
 
 /* Metres in a degree of a sphere as large as the earth (6,371 km). */

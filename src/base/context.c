@@ -124,6 +124,12 @@ const char *snow_status_description(snow_status status) {
     return "unknown status";
 }
 
+snow_status snow_need_path(snow_context *context, const char *path) {
+    return path ? SNOW_STATUS_OK
+                : snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                            "the path is NULL; give one, or \"-\"");
+}
+
 static void set_message(snow_context *context, const char *format,
                         va_list arguments) {
     pthread_mutex_lock(&context->lock);

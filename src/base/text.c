@@ -113,6 +113,8 @@ static int next_letter(const char *name, size_t *at) {
 bool snow_same_name(const char *a, const char *b) {
     size_t i = 0, j = 0;
     int left, right;
+    if (!a || !b)
+        return false;
     do {
         left = next_letter(a, &i);
         right = next_letter(b, &j);

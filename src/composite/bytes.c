@@ -46,8 +46,17 @@ snow_status snow_image_to_rgb8_with(const snow_image *image,
     snow_image_options options;
     SNOW_TRY(
         SNOW_RECORD_READ(image->context, snow_image_options, given, &options));
+    if (image->channels == 1)
+        return snow_fail(image->context, SNOW_STATUS_BAD_USAGE,
+                         "the picture holds values, not colours; take "
+                         "snow_image_apply_colormap first");
     if (!options.flatten)
         memset(options.background, 0, sizeof options.background);
+    for (int i = 0; i < 3; i++)
+        if (!(options.background[i] >= 0 && options.background[i] <= 1))
+            return snow_fail(image->context, SNOW_STATUS_BAD_USAGE,
+                             "the background has a channel of %g; use 0 to 1",
+                             options.background[i]);
     const snow_overlay *overlay = options.overlay;
     const int channels = overlay && !overlay->grey ? 4 : image->channels;
     snow_bytes_fn *convert = snow_bytes_of(snow_isa_resolve(SNOW_ISA_AUTO));
@@ -66,9 +75,9 @@ snow_status snow_image_to_rgb8_with(const snow_image *image,
     return SNOW_STATUS_OK;
 }
 
-void snow_image_to_rgb8(const snow_image *image, const double background[3],
-                        unsigned char *rgb) {
+snow_status snow_image_to_rgb8(const snow_image *image,
+                               const double background[3], unsigned char *rgb) {
     snow_image_options options = {.size = sizeof options, .flatten = true};
     memcpy(options.background, background, sizeof options.background);
-    snow_image_to_rgb8_with(image, &options, rgb);
+    return snow_image_to_rgb8_with(image, &options, rgb);
 }

@@ -376,6 +376,7 @@ static snow_status open_any(snow_context *context, const char *path,
                             snow_volume_info *info, snow_volume **out) {
     snow_volume_options options;
     snow_volume *volume = NULL, **wanted = out ? &volume : NULL;
+    SNOW_TRY(snow_need_path(context, path));
     SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_options, given, &options));
     snow_lookup_begin(context);
     snow_status status =

@@ -35,6 +35,7 @@ static snow_status check_options(opening *o,
     o->options.mask = o->options.labels = NULL;
     memset(o->options.clip, 0, sizeof o->options.clip);
     memcpy(o->clip, options->clip, sizeof o->clip);
+    SNOW_TRY(snow_planes_check(o->context, o->clip[0], SNOW_CLIPS_MAX));
     if (!options->mask && !options->labels)
         return SNOW_STATUS_OK;
     if (options->labels && !snow_labels_parse(options->labels, o->labels,

@@ -40,6 +40,7 @@ static snow_status refuse_name(snow_context *context, const char *path) {
 snow_status snow_volume_save(const snow_volume *volume, const char *path,
                              bool overwrite) {
     size_t i = 0;
+    SNOW_TRY(snow_need_path(volume->context, path));
     SNOW_TRY(snow_volume_need_voxels(volume));
     while (i < ENDING_COUNT && !snow_has_suffix(path, endings[i].suffix))
         i++;

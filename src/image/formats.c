@@ -30,6 +30,8 @@ static const snow_image_format *const formats[] = {
 /* The format of a path's suffix, or NULL.  There is no default for other names:
  * a picture in a format that nobody requested would be a surprise. */
 static const snow_image_format *format_of(const char *path) {
+    if (!path)
+        return NULL;
     if (strcmp(path, "-") == 0)
         return formats[0];
     for (size_t i = 0; i < FORMAT_COUNT; i++)
@@ -70,6 +72,7 @@ static snow_status load_module(snow_context *context, const char *path,
 
 static snow_status choose_format(snow_context *context, const char *path,
                                  const snow_image_format **out) {
+    SNOW_TRY(snow_need_path(context, path));
     const snow_image_format *format = format_of(path);
     if (format && format->package)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
@@ -295,6 +298,7 @@ snow_status snow_image_load(snow_context *context, const char *path,
                             snow_image **out) {
     snow_source *source = NULL;
     snow_image *image = NULL;
+    SNOW_TRY(snow_need_path(context, path));
     snow_lookup_begin(context);
     SNOW_TRY(snow_source_open(context, path, &source));
     snow_status status = snow_lookup_end(context, read_picture(source, &image));

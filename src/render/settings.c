@@ -35,6 +35,11 @@ static const char *const modes[] = {
 
 #define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
 
+/* The name of a value, or NULL. */
+static const char *name_at(const char *const *names, int count, int value) {
+    return value >= 0 && value < count ? names[value] : NULL;
+}
+
 /* The index of a name, or -1. */
 static int find_name(const char *const *names, int count, const char *name) {
     for (int i = 0; i < count; i++)
@@ -44,11 +49,11 @@ static int find_name(const char *const *names, int count, const char *name) {
 }
 
 const char *snow_method_name(snow_method method) {
-    return (int)method < COUNT(methods) ? methods[method] : NULL;
+    return name_at(methods, COUNT(methods), (int)method);
 }
 
 const char *snow_encoding_name(snow_encoding encoding) {
-    return (int)encoding < COUNT(encodings) ? encodings[encoding] : NULL;
+    return name_at(encodings, COUNT(encodings), (int)encoding);
 }
 
 int snow_method_from_name(const char *name) {
@@ -60,7 +65,7 @@ int snow_encoding_from_name(const char *name) {
 }
 
 const char *snow_quality_name(snow_quality quality) {
-    return (int)quality < COUNT(qualities) ? qualities[quality] : NULL;
+    return name_at(qualities, COUNT(qualities), (int)quality);
 }
 
 int snow_quality_from_name(const char *name) {
@@ -68,7 +73,7 @@ int snow_quality_from_name(const char *name) {
 }
 
 const char *snow_mode_name(snow_mode mode) {
-    return (int)mode < COUNT(modes) ? modes[mode] : NULL;
+    return name_at(modes, COUNT(modes), (int)mode);
 }
 
 int snow_mode_from_name(const char *name) {

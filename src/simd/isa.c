@@ -18,7 +18,8 @@ const char *snow_version(void) {
 }
 
 const char *snow_isa_name(snow_isa isa) {
-    return (int)isa < LEVELS ? names[isa] : NULL;
+    const int value = (int)isa;
+    return value >= 0 && value < LEVELS ? names[value] : NULL;
 }
 
 int snow_isa_from_name(const char *name) {

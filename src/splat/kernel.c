@@ -80,7 +80,8 @@ static const struct kernel_entry {
 #define KERNEL_COUNT (int)(sizeof kernels / sizeof kernels[0])
 
 const char *snow_kernel_name(snow_kernel kernel) {
-    return (int)kernel < KERNEL_COUNT ? kernels[kernel].name : NULL;
+    const int value = (int)kernel;
+    return value >= 0 && value < KERNEL_COUNT ? kernels[value].name : NULL;
 }
 
 int snow_kernel_from_name(const char *name) {

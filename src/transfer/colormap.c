@@ -178,7 +178,7 @@ int snow_colormap_from_name(const char *name) {
     for (size_t i = 0; i < 2 * map_count; i++)
         if (snow_same_name(name, maps[i % map_count].names[i / map_count]))
             return (int)i;
-    return snow_colormap_list(name, points) ? (int)(2 * map_count) : -1;
+    return name && snow_colormap_list(name, points) ? (int)(2 * map_count) : -1;
 }
 
 size_t snow_colormap_points(size_t index, snow_color_point *points,

@@ -28,6 +28,10 @@ static snow_status refuse_name(snow_context *context, const char *what,
 }
 
 static snow_status check_look(snow_context *context, const snow_look *look) {
+    if ((int)look->range < SNOW_RANGE_AUTO || look->range > SNOW_RANGE_SIGNAL)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "range %d is out of range; take a value of snow_range",
+                         (int)look->range);
     if (look->preset && snow_preset_from_name(look->preset) < 0)
         return refuse_name(context, "preset", look->preset, snow_preset_name);
     if (look->colormap && snow_colormap_from_name(look->colormap) < 0)

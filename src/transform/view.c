@@ -68,7 +68,7 @@ snow_status snow_view_from_name(snow_context *context, const char *name,
     }
     return snow_fail(
         context, SNOW_STATUS_BAD_USAGE,
-        "unknown view '%s': must be anterior, posterior, left, "
+        "unknown view '%.64s': must be anterior, posterior, left, "
         "right, superior, inferior, iso, oblique, axial, "
         "coronal, sagittal, front, back, top, bottom, +x, -x, +y, -y, +z "
         "or -z",

@@ -9,7 +9,24 @@
 #define PLANE_TOLERANCE 1e-6
 
 bool snow_is_plane(const double plane[4]) {
-    return plane[0] != 0 || plane[1] != 0 || plane[2] != 0;
+    return plane[0] != 0 || plane[1] != 0 || plane[2] != 0 || plane[3] != 0;
+}
+
+snow_status snow_planes_check(snow_context *context, const double *planes,
+                              size_t count) {
+    for (size_t n = 0; n < count; n++) {
+        const double *p = planes + 4 * n;
+        const bool has_normal = p[0] != 0 || p[1] != 0 || p[2] != 0;
+        if (!snow_is_plane(p) || (has_normal && isfinite(p[0]) &&
+                                  isfinite(p[1]) && isfinite(p[2]) &&
+                                  isfinite(p[3])))
+            continue;
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "clip plane %zu is %g %g %g %g; give finite numbers, "
+                         "of which the first three, its normal, are not all 0",
+                         n, p[0], p[1], p[2], p[3]);
+    }
+    return SNOW_STATUS_OK;
 }
 
 static void to_index(const snow_volume_info *info, const double plane[4],

@@ -34,8 +34,12 @@ typedef struct snow_clip_planes {
     double reach[3]; /* how far values are kept, in steps along each axis */
 } snow_clip_planes;
 
-/* Returns whether four numbers are a plane: the first three are not all 0. */
+/* Returns whether four numbers stand for a plane: four zeros are none. */
 bool snow_is_plane(const double plane[4]);
+
+/* Refuses planes without a normal or with a number that is not finite. */
+snow_status snow_planes_check(snow_context *context, const double *planes,
+                              size_t count);
 
 /* Those of `before` (NULL: none), and `count` planes of the world, four numbers
  * each.  *out is NULL where there is no

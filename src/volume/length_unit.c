@@ -80,7 +80,7 @@ static bool make_key(const char *text, char key[KEY_BYTES]) {
 
 double snow_unit_length(const char *text, char name[16]) {
     char key[KEY_BYTES];
-    if (!make_key(text, key))
+    if (!text || !make_key(text, key))
         return 0;
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
         if (!strcmp(key, units[i].symbol) || !strcmp(key, units[i].name)) {

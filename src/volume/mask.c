@@ -60,6 +60,8 @@ bool snow_labels_parse(const char *text, snow_label_range *ranges,
                        size_t capacity, size_t *count) {
     snow_label_range read[SNOW_LABELS_MAX];
     size_t n = 0;
+    if (!text)
+        return false;
     do {
         if (n == capacity || n == SNOW_LABELS_MAX ||
             !read_range(&text, &read[n]))
@@ -353,6 +355,7 @@ snow_status snow_volume_clip(const snow_volume *volume, const double *planes,
         return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
                          "too many clip planes: %zu, at most %d", count,
                          SNOW_CLIPS_MAX);
+    SNOW_TRY(snow_planes_check(volume->context, planes, count));
     return snow_mask_apply(volume, &by, &any, out);
 }
 

@@ -62,7 +62,8 @@ static snow_status new_stream(snow_context *context, const char *path,
                    text_bytes(options->dataset) + text_bytes(options->series) +
                    text_bytes(options->component) + text_bytes(options->mask) +
                    text_bytes(options->labels) +
-                   text_bytes(options->label_table) + text_bytes(options->suv);
+                   text_bytes(options->label_table) + text_bytes(options->suv) +
+                   text_bytes(options->vertical);
     snow_stream *stream = snow_allocate_clear(context, bytes);
     if (!stream)
         return SNOW_STATUS_NO_MEMORY;
@@ -75,6 +76,7 @@ static snow_status new_stream(snow_context *context, const char *path,
     stream->options.labels = keep(options->labels, &at);
     stream->options.label_table = keep(options->label_table, &at);
     stream->options.suv = keep(options->suv, &at);
+    stream->options.vertical = keep(options->vertical, &at);
     stream->path = at;
     keep(path, &at);
     stream->slab_bytes = slab_bytes ? slab_bytes : SNOW_SLAB_BYTES;
@@ -89,6 +91,7 @@ snow_status snow_stream_open(snow_context *context, const char *path,
     snow_volume_options known;
     snow_volume_info info;
     snow_stream *stream;
+    SNOW_TRY(snow_need_path(context, path));
     SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_options, options, &known));
     if (snow_source_is_stream(path))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,

@@ -114,9 +114,9 @@ snow_status snow_volume_info_check(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* A volume over given voxels; info is already checked. */
-static snow_status wrap(snow_context *context, const snow_volume_info *info,
-                        const void *voxels, snow_volume **out) {
+snow_status snow_volume_over(snow_context *context,
+                             const snow_volume_info *info, const void *voxels,
+                             snow_volume **out) {
     snow_volume *volume = snow_allocate_clear(context, sizeof *volume);
     if (!volume)
         return SNOW_STATUS_NO_MEMORY;
@@ -152,7 +152,7 @@ snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
     if (!voxels)
         return SNOW_STATUS_NO_MEMORY;
     snow_volume *volume;
-    snow_status status = wrap(context, info, voxels, &volume);
+    snow_status status = snow_volume_over(context, info, voxels, &volume);
     if (status != SNOW_STATUS_OK) {
         snow_release(context, voxels);
         return status;
@@ -272,47 +272,6 @@ snow_volume_info snow_volume_info_of_box(const snow_volume_info *whole,
             info.matrix[i][3] += info.matrix[i][j] * (double)first[j];
     }
     return info;
-}
-
-/* Voxels of the caller come without a file: no source is checked against the
- * sizes, whose truth is the caller's word. */
-snow_status snow_volume_wrap(snow_context *context,
-                             const snow_volume_info *given, const void *voxels,
-                             snow_volume **out) {
-    snow_volume_info info;
-    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_info, given, &info));
-    if (!voxels)
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "the address of the voxels is NULL");
-    static const double zero[4][4];
-    snow_volume_info own = snow_volume_info_default("memory");
-    memcpy(own.dims, info.dims, sizeof own.dims);
-    own.type = info.type;
-    const bool placed = memcmp(info.matrix, zero, sizeof zero) != 0;
-    if (placed)
-        memcpy(own.matrix, info.matrix, sizeof own.matrix);
-    for (int axis = 0; axis < 3 && !placed; axis++)
-        if (info.spacing[axis] > 0)
-            own.matrix[axis][axis] = info.spacing[axis];
-        else if (info.spacing[axis] != 0)
-            return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                             "the spacing along %c is %g; it must be above 0",
-                             "xyz"[axis], info.spacing[axis]);
-    own.slope = info.slope == 0 ? 1 : info.slope;
-    own.intercept = info.intercept;
-    own.medical = info.medical;
-    own.hounsfield = info.hounsfield;
-    own.eight_bits = info.eight_bits;
-    own.whole = info.whole;
-    memcpy(own.unit, info.unit, sizeof own.unit);
-    own.unit[sizeof own.unit - 1] = 0;
-    memcpy(own.modality, info.modality, sizeof own.modality - 1);
-    memcpy(own.value_unit, info.value_unit, sizeof own.value_unit - 1);
-    memcpy(own.window, info.window, sizeof own.window);
-    snow_status status = snow_volume_info_check(context, &own);
-    if (status != SNOW_STATUS_OK)
-        return SNOW_STATUS_BAD_USAGE; /* the caller's, not a file's */
-    return wrap(context, &own, voxels, out);
 }
 
 static int compare_labels(const void *a, const void *b) {

@@ -125,6 +125,11 @@ snow_status snow_volume_info_check(snow_context *context,
 snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
                             snow_volume **out);
 
+/* A volume over voxels that are not its own; info is already checked. */
+snow_status snow_volume_over(snow_context *context,
+                             const snow_volume_info *info, const void *voxels,
+                             snow_volume **out);
+
 /* Makes values labels, of which copies of these are known, if any. */
 snow_status snow_volume_set_labels(snow_volume *volume,
                                    const snow_label *labels, size_t count);

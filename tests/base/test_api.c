@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <snowglass/extend.h>
+#include <snowglass/look_file.h>
 #include <snowglass/recipe.h>
 #include <snowglass/snowglass.h>
 #include <stdio.h>
@@ -13,6 +14,9 @@
     for (int i = 0; snow_##word##_name((snow_##word)i); i++)                 \
         assert_int_equal(                                                    \
             snow_##word##_from_name(snow_##word##_name((snow_##word)i)), i); \
+    assert_null(snow_##word##_name((snow_##word)-1));                        \
+    assert_null(snow_##word##_name((snow_##word)1000));                      \
+    assert_int_equal(snow_##word##_from_name(NULL), -1);                     \
     assert_int_equal(snow_##word##_from_name("nothing"), -1)
 
 static void a_name_leads_back_to_its_value(void **state) {
@@ -73,6 +77,224 @@ static void a_file_that_is_missing_makes_no_image(void **state) {
     assert_int_equal(snow_image_save(image, "no.png", NULL),
                      SNOW_STATUS_BAD_USAGE);
     assert_true(snow_volume_read_seconds(NULL) == 0);
+    snow_context_free(context);
+}
+
+/* --- arguments ------------------------------------------------------------ */
+
+static void a_text_that_is_null_is_none(void **state) {
+    snow_label_range range;
+    size_t count = 0;
+    (void)state;
+    assert_int_equal(snow_type_from_name(NULL), SNOW_TYPE_NONE);
+    assert_int_equal(snow_preset_from_name(NULL), -1);
+    assert_int_equal(snow_colormap_from_name(NULL), -1);
+    assert_true(snow_unit_length(NULL, NULL) == 0);
+    assert_false(snow_labels_parse(NULL, &range, 1, &count));
+    assert_int_equal(snow_image_format_bits(NULL), -1);
+    assert_false(snow_image_format_has_depth(NULL));
+    assert_true(strlen(snow_context_message(NULL)) > 0);
+}
+
+#define NO_PATH(call)                                              \
+    assert_int_equal(call, SNOW_STATUS_BAD_USAGE);                 \
+    assert_non_null(strstr(snow_context_message(context), "NULL"))
+
+static void a_path_that_is_null_is_refused(void **state) {
+    snow_context *context = support_context();
+    snow_volume *volume = NULL, *cube = NULL;
+    snow_image *image = NULL, *other = NULL;
+    snow_look_file *look = NULL;
+    snow_volume_info info = {.size = sizeof info};
+    (void)state;
+    NO_PATH(snow_volume_open(context, NULL, NULL, &volume));
+    NO_PATH(snow_volume_inspect(context, NULL, NULL, &info));
+    NO_PATH(snow_volume_open_streamed(context, NULL, NULL, 0, &volume));
+    NO_PATH(snow_render_file(context, NULL, NULL, NULL, &image));
+    NO_PATH(snow_image_load(context, NULL, &image));
+    NO_PATH(snow_image_check_path(context, NULL, false));
+    NO_PATH(snow_look_load(context, NULL, &look));
+    assert_true(!volume && !image && !look);
+    assert_int_equal(snow_image_new(context, 1, 1, 4, &other), SNOW_STATUS_OK);
+    NO_PATH(snow_image_save(other, NULL, NULL));
+    assert_int_equal(snow_volume_open(context, "phantom:cube", NULL, &cube),
+                     SNOW_STATUS_OK);
+    NO_PATH(snow_volume_save(cube, NULL, false));
+    snow_volume_close(cube);
+    snow_image_free(other);
+    snow_context_free(context);
+}
+
+/* Wraps 2x2x2 voxels of a spacing; returns the status. */
+static snow_status wrap_spacing(snow_context *context, double spacing) {
+    static const uint8_t voxels[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const snow_volume_info info = {.size = sizeof info,
+                                   .dims = {2, 2, 2},
+                                   .type = SNOW_TYPE_UINT8,
+                                   .spacing = {1, spacing, 0}};
+    snow_volume *volume = NULL;
+    snow_status status = snow_volume_wrap(context, &info, voxels, &volume);
+    if (status == SNOW_STATUS_OK) {
+        const snow_volume_info *known = snow_volume_get_info(volume);
+        assert_true(known->spacing[1] == spacing && known->spacing[2] == 1 &&
+                    known->matrix[1][1] == spacing);
+    }
+    assert_int_equal(!volume, status != SNOW_STATUS_OK);
+    snow_volume_close(volume);
+    return status;
+}
+
+static void wrapped_voxels_take_a_spacing_or_three_rows(void **state) {
+    static const uint8_t voxels[8] = {0};
+    static const double rows[3][4] = {
+        {0, 2, 0, 5}, {3, 0, 0, 6}, {0, 0, 4, 7}};
+    snow_context *context = support_context();
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {2, 2, 2}, .type = SNOW_TYPE_UINT8};
+    snow_volume *volume = NULL;
+    (void)state;
+    assert_int_equal(wrap_spacing(context, 2.5), SNOW_STATUS_OK);
+    assert_int_equal(wrap_spacing(context, -1), SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(wrap_spacing(context, (double)NAN),
+                     SNOW_STATUS_BAD_USAGE);
+    memcpy(info.matrix, rows, sizeof rows);
+    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
+                     SNOW_STATUS_OK);
+    const snow_volume_info *known = snow_volume_get_info(volume);
+    assert_true(known->matrix[3][3] == 1 && known->matrix[0][3] == 5);
+    assert_true(known->spacing[0] == 3 && known->spacing[1] == 2);
+    snow_volume_close(volume);
+    info.matrix[3][3] = 2;
+    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
+                     SNOW_STATUS_BAD_USAGE);
+    snow_context_free(context);
+}
+
+static void planes_without_a_normal_are_refused(void **state) {
+    static const double planes[][4] = {{(double)NAN, 0, 0, 1},
+                                       {1, 0, 0, (double)NAN},
+                                       {1, 0, 0, (double)INFINITY},
+                                       {0, 0, 0, 1}};
+    static const double none[4] = {0};
+    snow_context *context = support_context();
+    snow_volume *volume = NULL, *made = NULL;
+    (void)state;
+    assert_int_equal(snow_volume_open(context, "phantom:cube", NULL, &volume),
+                     SNOW_STATUS_OK);
+    for (size_t n = 0; n < sizeof planes / sizeof *planes; n++) {
+        snow_volume_options options = {.size = sizeof options};
+        memcpy(options.clip[1], planes[n], sizeof planes[n]);
+        assert_int_equal(snow_volume_clip(volume, planes[n], 1, &made),
+                         SNOW_STATUS_BAD_USAGE);
+        assert_int_equal(
+            snow_volume_open(context, "phantom:cube", &options, &made),
+            SNOW_STATUS_BAD_USAGE);
+        assert_non_null(strstr(snow_context_message(context), "clip plane"));
+        assert_null(made);
+    }
+    assert_int_equal(snow_volume_clip(volume, none, 1, &made), SNOW_STATUS_OK);
+    snow_volume_close(made);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+static void a_range_that_is_none_is_refused(void **state) {
+    snow_context *context = support_context();
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    snow_look look = {.size = sizeof look, .range = (snow_range)99};
+    (void)state;
+    assert_int_equal(snow_volume_open(context, "phantom:cube", NULL, &volume),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_transfer_new_for_volume(volume, &look, &transfer),
+                     SNOW_STATUS_BAD_USAGE);
+    look.range = (snow_range)-1;
+    assert_int_equal(snow_transfer_new_for_volume(volume, &look, &transfer),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_null(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+/* Values are no colours, and a background is 0 to 1, as in files. */
+static void levels_are_made_of_colours_alone(void **state) {
+    static const double black[3] = {0}, seven[3] = {7, 0, 0};
+    unsigned char rgb[3] = {9, 9, 9};
+    snow_context *context = support_context();
+    snow_image *values = NULL, *colors = NULL;
+    (void)state;
+    assert_int_equal(snow_image_new(context, 1, 1, 1, &values), SNOW_STATUS_OK);
+    assert_int_equal(snow_image_new(context, 1, 1, 4, &colors), SNOW_STATUS_OK);
+    assert_ptr_equal(snow_image_data(colors), snow_image_pixels(colors));
+    snow_image_pixels(values)[0] = 1;
+    assert_int_equal(snow_image_to_rgb8(values, black, rgb),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_image_to_rgb8_with(values, NULL, rgb),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_image_to_rgb8(colors, seven, rgb),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_true(rgb[0] == 9 && rgb[2] == 9);
+    assert_int_equal(snow_image_to_rgb8(colors, black, rgb), SNOW_STATUS_OK);
+    assert_true(rgb[0] == 0 && rgb[2] == 0);
+    snow_image_free(values);
+    snow_image_free(colors);
+    snow_context_free(context);
+}
+
+static void shapes_without_a_place_are_refused(void **state) {
+    const double nan = (double)NAN;
+    snow_context *context = support_context();
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    snow_overlay *o = NULL;
+    (void)state;
+    assert_int_equal(snow_overlay_new(context, 200, 200, &o), SNOW_STATUS_OK);
+    assert_int_equal(snow_overlay_text(o, nan, 9, 0, 0, 12, "A"),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_overlay_text(o, 9, 9, 0, 0, -12, "A"),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_overlay_text(o, 9, 9, 0, 0, nan, "A"),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_overlay_text(o, 9, 9, 0, 0, 12, "A"), SNOW_STATUS_OK);
+    assert_int_equal(snow_volume_open(context, "phantom:cube", NULL, &volume),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_overlay_color_bar(o, transfer, NULL, NULL, 3, 1),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_overlay_color_bar(o, transfer, NULL, NULL, -1, 1),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_overlay_color_bar(o, transfer, NULL, NULL, 0, 1),
+                     SNOW_STATUS_OK);
+    snow_overlay_free(o);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+/* The keys that a cleared recipe writes are those of a new one. */
+static void a_cleared_recipe_is_a_new_one(void **state) {
+    static const char text[] = "{\"input\": \"a.nrrd\", \"zoom\": 2}";
+    snow_context *context = support_context();
+    char cleared[4096], fresh[4096];
+    size_t length = 0;
+    snow_recipe recipe, other;
+    (void)state;
+    snow_recipe_init(&recipe);
+    snow_recipe_init(&other);
+    assert_int_equal(
+        snow_recipe_parse(context, "text", text, sizeof text - 1, &recipe),
+        SNOW_STATUS_OK);
+    assert_string_equal(recipe.input, "a.nrrd");
+    snow_recipe_clear(&recipe);
+    assert_null(recipe.input);
+    assert_int_equal(snow_recipe_write(context, &recipe, cleared,
+                                       sizeof cleared, &length),
+                     SNOW_STATUS_OK);
+    assert_int_equal(
+        snow_recipe_write(context, &other, fresh, sizeof fresh, &length),
+        SNOW_STATUS_OK);
+    assert_string_equal(cleared, fresh);
     snow_context_free(context);
 }
 
@@ -352,6 +574,14 @@ int main(void) {
         cmocka_unit_test(a_name_leads_back_to_its_value),
         cmocka_unit_test(a_file_is_rendered_in_one_call),
         cmocka_unit_test(a_file_that_is_missing_makes_no_image),
+        cmocka_unit_test(a_text_that_is_null_is_none),
+        cmocka_unit_test(a_path_that_is_null_is_refused),
+        cmocka_unit_test(wrapped_voxels_take_a_spacing_or_three_rows),
+        cmocka_unit_test(planes_without_a_normal_are_refused),
+        cmocka_unit_test(a_range_that_is_none_is_refused),
+        cmocka_unit_test(levels_are_made_of_colours_alone),
+        cmocka_unit_test(shapes_without_a_place_are_refused),
+        cmocka_unit_test(a_cleared_recipe_is_a_new_one),
         cmocka_unit_test(initialisers_reach_as_far_as_the_callers_record),
         cmocka_unit_test(initialisers_give_the_documented_defaults),
         cmocka_unit_test(a_size_of_0_is_refused),

@@ -228,7 +228,7 @@ static void voxels_beyond_planes_are_left_out(void **state) {
     support_files *place = *state;
     static const int16_t v[24] = {0};
     static const double planes[][4] = {
-        {0.3, 0, 0.1, 4}, {0, 0, 0, -9}, {0, -2, 0, 2.6}};
+        {0.3, 0, 0.1, 4}, {0, 0, 0, 0}, {0, -2, 0, 2.6}};
     snow_volume_info info = info_of(SNOW_TYPE_INT16, 4, 3, 2);
     static const double matrix[4][4] = {
         {0, 2, 0.5, 7}, {1.3, 0, 0, -2.6}, {0, 0.25, 3, 1}, {0, 0, 0, 1}};

@@ -174,6 +174,9 @@ snow_status snow_look_load(snow_context *context, const char *path,
                            snow_look_file **out) {
     char name[4096];
     struct stat about;
+    if (!path)
+        return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
+                                 "the path is NULL; give one");
     const char *hash = strrchr(path, '#');
     size_t length = hash ? (size_t)(hash - path) : 0;
     /* What cannot be looked at is a file, whose opening says why. */
