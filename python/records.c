@@ -253,7 +253,7 @@ static const field view_fields[] = {
     VIEW(azimuth, 'd'), VIEW(elevation, 'd'),
     VIEW(roll, 'd'),    VIEW(zoom, 'd'),
     VIEW(fov, 'd'),     VIEW(position, '3'),
-    VIEW(target, '3'),  {"up", '3', offsetof(snow_view, upward), NULL, NULL},
+    VIEW(target, '3'),  {"up", '3', offsetof(snow_view, view_up), NULL, NULL},
 };
 
 #define OPTION(name, kind) FIELD(snow_volume_options, name, kind)
@@ -308,7 +308,7 @@ bool record_fill_view(PyObject *given, snow_view *view) {
         return false;
     view->has_position = record_has(given, "position");
     view->has_target = record_has(given, "target");
-    view->has_up = record_has(given, "up");
+    view->has_view_up = record_has(given, "up");
     return true;
 }
 

@@ -25,10 +25,10 @@ typedef struct snow_view {
     double zoom;       /* above 0; 2 shows everything twice as large */
     double fov;        /* degrees over the shorter side, SNOW_FOV_MIN to
                           SNOW_FOV_MAX; 0: a parallel projection */
-    bool has_position, has_target, has_up; /* these count, instead of `back`,
+    bool has_position, has_target, has_view_up; /* these count, instead of `back`,
                                               the middle, `up`: */
     double position[3], target[3];         /* world; camera, what it looks at */
-    double upward[3]; /* world; up in the picture. Without it a camera with a
+    double view_up[3]; /* world; up in the picture. Without it a camera with a
                          position has +z up, or +y if it looks along z */
     double strip;     /* of the width at the right, for a legend: 0 to 0.5 */
 } snow_view;

@@ -68,10 +68,10 @@ int make_settings(const options *opts, const snow_volume_info *info,
 static void place_camera(const options *opts, snow_view *out) {
     out->has_position = opts->position.given;
     out->has_target = opts->target.given;
-    out->has_up = opts->up.given;
+    out->has_view_up = opts->up.given;
     memcpy(out->position, opts->position.at, sizeof out->position);
     memcpy(out->target, opts->target.at, sizeof out->target);
-    memcpy(out->upward, opts->up.at, sizeof out->upward);
+    memcpy(out->view_up, opts->up.at, sizeof out->view_up);
 }
 
 /* A named view also sets size and angles, so it comes before them. */

@@ -53,15 +53,15 @@ static void add_view(uint64_t *print, const snow_view *view) {
                             view->azimuth, view->elevation, view->roll,
                             view->zoom,    view->fov};
     const int64_t wholes[] = {view->width, view->height, view->has_position,
-                              view->has_target, view->has_up};
+                              view->has_target, view->has_view_up};
     ADD_ALL(print, reals);
     ADD_ALL(print, wholes);
     if (view->has_position)
         ADD_ALL(print, view->position);
     if (view->has_target)
         ADD_ALL(print, view->target);
-    if (view->has_up)
-        ADD_ALL(print, view->upward);
+    if (view->has_view_up)
+        ADD_ALL(print, view->view_up);
 }
 
 /* All but threads and instruction sets, which machines may have of their

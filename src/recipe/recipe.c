@@ -238,7 +238,7 @@ snow_status snow_recipe_get_view(snow_context *context,
     view.fov = recipe->fov;
     view.has_position = take_place(recipe->position, view.position);
     view.has_target = take_place(recipe->target, view.target);
-    view.has_up = take_place(recipe->up, view.upward);
+    view.has_view_up = take_place(recipe->up, view.view_up);
     if (view.has_position && recipe->view)
         return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
                                  "\"position\" and \"view\" both place the "

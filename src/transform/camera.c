@@ -86,14 +86,14 @@ static snow_status look_back(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* The component of `upward` perpendicular to the line of sight. */
-static bool straighten(const double upward[3], const double back[3],
+/* The component of `view_up` perpendicular to the line of sight. */
+static bool straighten(const double view_up[3], const double back[3],
                        double up[3]) {
-    double length = snow_length(upward), unit[3];
+    double length = snow_length(view_up), unit[3];
     if (!(length > 0) || !isfinite(length))
         return false;
     for (int i = 0; i < 3; i++)
-        unit[i] = upward[i] / length;
+        unit[i] = view_up[i] / length;
     double along = snow_dot(unit, back);
     for (int i = 0; i < 3; i++)
         up[i] = unit[i] - along * back[i];
@@ -106,13 +106,13 @@ static bool straighten(const double upward[3], const double back[3],
 static snow_status look_up(snow_context *context, const snow_view *view,
                            snow_camera *out) {
     static const double z[3] = {0, 0, 1}, y[3] = {0, 1, 0};
-    if (view->has_up) {
-        if (straighten(view->upward, out->back, out->up))
+    if (view->has_view_up) {
+        if (straighten(view->view_up, out->back, out->up))
             return SNOW_STATUS_OK;
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "invalid up vector %g,%g,%g: must be finite, not zero "
                          "and not parallel to the line of sight",
-                         view->upward[0], view->upward[1], view->upward[2]);
+                         view->view_up[0], view->view_up[1], view->view_up[2]);
     }
     if (!view->has_position)
         memcpy(out->up, view->up, sizeof out->up);

@@ -73,8 +73,8 @@ static double place_back(const snow_view *view, reference_camera *out) {
 
 /* Right is across the direction that is meant to be up and the line of sight,
  * up then across these. */
-static void place_up(const double upward[3], reference_camera *out) {
-    cross(upward, out->back, out->right);
+static void place_up(const double view_up[3], reference_camera *out) {
+    cross(view_up, out->back, out->right);
     double length = sqrt(reference_dot(out->right, out->right));
     for (int n = 0; n < 3; n++)
         out->right[n] /= length;
@@ -95,8 +95,8 @@ void reference_camera_of(const reference_scene *scene, reference_camera *out) {
         length = place_back(view, out);
     bool along_z = hypot(out->back[0], out->back[1]) < 1e-6;
     cross(out->up, out->back, out->right);
-    if (view->has_up)
-        place_up(view->upward, out);
+    if (view->has_view_up)
+        place_up(view->view_up, out);
     else if (view->has_position)
         place_up(along_z ? (double[]){0, 1, 0} : (double[]){0, 0, 1}, out);
     turn(out->back, out->right, view->azimuth);

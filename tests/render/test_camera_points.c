@@ -40,12 +40,12 @@ static reference_scene drawn_scene(uint64_t *state, int n) {
     scene.view.zoom = 0.5 + 2 * support_uniform(state);
     scene.view.has_target = n % 4 != 1;
     scene.view.has_position = n % 4 != 2;
-    scene.view.has_up = n % 3 != 1;
+    scene.view.has_view_up = n % 3 != 1;
     draw_place(&scene, state, 0.6, false, scene.view.target);
     draw_place(&scene, state, 2.5 + 3 * support_uniform(state), true,
                scene.view.position);
     for (int i = 0; i < 3; i++)
-        scene.view.upward[i] = support_uniform(state) - 0.5;
+        scene.view.view_up[i] = support_uniform(state) - 0.5;
     if (n % 7 == 0)
         model_turn(&scene, 360 * support_uniform(state), 30,
                    45 * support_uniform(state), scene.view.zoom);
@@ -149,7 +149,7 @@ static void the_target_falls_on_the_middle(void **state) {
     model_free(&scene);
 }
 
-/* What of `upward` is across the line of sight points to the picture's top. */
+/* What of `view_up` is across the line of sight points to the picture's top. */
 static void up_is_up(void **state) {
     model_stage *stage = *state;
     reference_scene scene = model_blank((int64_t[]){9, 9, 9}, 1);
@@ -157,17 +157,17 @@ static void up_is_up(void **state) {
     for (int n = 0; n < 50; n++) {
         snow_camera camera;
         double along = 0, up = 0;
-        scene.view.has_up = true;
+        scene.view.has_view_up = true;
         scene.view.has_position = n % 2;
         draw_place(&scene, &random, 5, true, scene.view.position);
         for (int i = 0; i < 3; i++)
-            scene.view.upward[i] = 100 * (support_uniform(&random) - 0.5);
+            scene.view.view_up[i] = 100 * (support_uniform(&random) - 0.5);
         assert_int_equal(
             snow_camera_make(stage->context, &scene.info, &scene.view, &camera),
             SNOW_STATUS_OK);
         for (int i = 0; i < 3; i++) {
-            along += camera.right[i] * scene.view.upward[i];
-            up += camera.up[i] * scene.view.upward[i];
+            along += camera.right[i] * scene.view.view_up[i];
+            up += camera.up[i] * scene.view.view_up[i];
         }
         assert_near(along, 0, 1e-12);
         assert_true(up > 0);
@@ -199,11 +199,11 @@ static void cameras_that_cannot_be_are_refused(void **state) {
     view->target[1] = (double)NAN;
     check_camera(stage, &scene, "must be finite");
     *view = fine;
-    view->has_up = true;
+    view->has_view_up = true;
     check_camera(stage, &scene, "up vector 0,0,0");
-    view->upward[2] = -3; /* the line of sight of +z */
+    view->view_up[2] = -3; /* the line of sight of +z */
     check_camera(stage, &scene, "parallel to the line of sight");
-    view->upward[2] = (double)INFINITY;
+    view->view_up[2] = (double)INFINITY;
     check_camera(stage, &scene, "invalid up vector");
     *view = fine;
     view->has_position = true; /* 1 before the nearest face */

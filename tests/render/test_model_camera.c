@@ -32,10 +32,10 @@ static void frame_of(const char *side, double back[3], double up[3]) {
         length += back[c] * back[c];
     for (int c = 0; c < 3; c++)
         back[c] /= sqrt(length);
-    int upward = fabs(back[2]) == 1 ? 1 : 2;
-    along = back[upward];
+    int up_axis = fabs(back[2]) == 1 ? 1 : 2;
+    along = back[up_axis];
     for (int c = 0; c < 3; c++)
-        up[c] = ((c == upward) - along * back[c]) / sqrt(1 - along * along);
+        up[c] = ((c == up_axis) - along * back[c]) / sqrt(1 - along * along);
 }
 
 static void each_view_stands_where_its_name_says(void **state) {

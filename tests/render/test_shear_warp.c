@@ -113,8 +113,8 @@ static void an_eye_is_as_near_as_an_eighth(void **state) {
         warp_scene scene = noisy_scene(1);
         reference_scene *s = &scene.base;
         s->view.fov = 60;
-        s->view.has_target = s->view.has_position = s->view.has_up = true;
-        s->view.upward[1] = 1;
+        s->view.has_target = s->view.has_position = s->view.has_view_up = true;
+        s->view.view_up[1] = 1;
         s->view.azimuth = s->view.elevation = s->view.roll = 0;
         warp_scene_place(s, (double[]){0.5, 0.5, 0.5}, s->view.target);
         warp_scene_place(s, (double[]){0.5, 0.5, -height}, s->view.position);

@@ -305,7 +305,7 @@ static void a_view_without_a_name_is_the_usual_one_turned(void **state) {
                      SNOW_STATUS_OK);
     assert_memory_equal(view.back, usual.back, sizeof view.back);
     assert_true(view.azimuth == 5 && view.width == 9 && view.height == 8);
-    assert_false(view.has_position || view.has_target || view.has_up);
+    assert_false(view.has_position || view.has_target || view.has_view_up);
     r.view = "iso";
     assert_int_equal(snow_recipe_get_view(context, &r, &usual, &view),
                      SNOW_STATUS_OK);
@@ -316,8 +316,8 @@ static void a_view_without_a_name_is_the_usual_one_turned(void **state) {
         SNOW_STATUS_OK);
     assert_int_equal(snow_recipe_get_view(context, &r, &usual, &view),
                      SNOW_STATUS_OK);
-    assert_true(view.has_position && !view.has_target && view.has_up);
-    assert_true(view.position[2] == -3.5 && view.upward[1] == 1);
+    assert_true(view.has_position && !view.has_target && view.has_view_up);
+    assert_true(view.position[2] == -3.5 && view.view_up[1] == 1);
     r.view = "iso";
     assert_int_equal(snow_recipe_get_view(context, &r, &usual, &view),
                      SNOW_STATUS_BAD_USAGE);

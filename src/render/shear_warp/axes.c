@@ -103,7 +103,7 @@ static int find_next(const snow_value_params *params, double from[3][3],
     const double angle = atan2(snow_length(across), snow_dot(from[2], to[2]));
     snow_view view = *params->view;
     view.azimuth = view.elevation = view.roll = 0;
-    view.has_position = view.has_target = view.has_up = false;
+    view.has_position = view.has_target = view.has_view_up = false;
     memcpy(view.up, to[1], sizeof view.up);
     memcpy(view.back, to[2], sizeof view.back);
     if (!(angle > TURN_LEAST && angle < TURN_MOST))
