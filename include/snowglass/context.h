@@ -1,9 +1,16 @@
-/* snowglass/context.h - memory and messages of all objects.
+/* snowglass/context.h - memory, messages and threads of all objects.
  *
- * The library has no global state: allocator, last error message, count of
- * bytes and the threads that render live in a context, made first and freed
- * last. It and all objects made with it belong to one thread at a time;
- * different ones are independent. After fork() threads are made anew. */
+ * The library has no global state. A context holds the allocator, the last
+ * message, a count of bytes, and the threads that render. It is made first and
+ * freed last, after all objects that were made with it.
+ *
+ * Threads. A context and all its objects belong to one thread at a time, const
+ * ones too: drawing a volume takes memory and threads of the volume's context.
+ * All objects of one call belong to one context. Different contexts are
+ * independent, and may be used at once. A server whose threads draw one volume
+ * gives each thread a context, in which it wraps the same voxels
+ * (snow_volume_voxels, snow_volume_wrap, snow_volume_freeze); the volume that
+ * owns them is closed last. After fork() the threads are made anew. */
 #ifndef SNOWGLASS_CONTEXT_H
 #define SNOWGLASS_CONTEXT_H
 
@@ -12,11 +19,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Records that a call reads or fills begin with `size` and may grow at their
- * end. Call snow_x_init(&x) first, which sets `size` and all defaults. Where
- * these are zeros (all but snow_view, snow_settings, snow_recipe), {.size =
- * sizeof(snow_x), ...} will do. Fields beyond `size` get their defaults and are
- * not written. BAD_USAGE: a size of 0, an unknown field that is not 0. */
+/* Declares a record that a call reads or fills. It begins with `size` and may
+ * grow at its end in a later version. Call snow_x_init(&x) first, which sets
+ * `size` and all defaults. Where the defaults are zeros (in all records but
+ * snow_view, snow_settings and snow_recipe), {.size = sizeof(snow_x), ...} does
+ * the same. Fields beyond `size` get their defaults, and are not written. A
+ * size of 0 and an unknown field that is not 0 are BAD_USAGE.
+ *
+ * Other records have no `size`, and stay as they are for a minor version; so do
+ * records with a size that lie within another one (snow_recipe.settings,
+ * snow_slice_place.view), and arrays of records. */
 #define SNOW_RECORD(record)                                       \
     SNOW_API void record##_init_sized(record *made, size_t size); \
     static inline void record##_init(record *made) {              \
@@ -26,32 +38,40 @@
 
 typedef struct snow_context snow_context;
 
-/* Memory aligned as malloc's, or NULL. Threads that render call it in turn. */
+/* The caller's memory. `allocate` returns memory aligned as malloc's, or NULL
+ * where there is none. Threads that render call both, one at a time. */
 typedef struct snow_allocator {
     void *(*allocate)(void *user, size_t bytes);
     void (*release)(void *user, void *block);
     void *user;
 } snow_allocator;
 
-/* `allocator` is copied; NULL: the C library's. Free a context last. */
+/* Makes a context. `allocator` is copied; NULL stands for the C library's. */
 SNOW_API snow_status snow_context_new(
     const snow_allocator *allocator, snow_context **out);
+
+/* Frees a context, after the objects that were made with it. */
 SNOW_API void snow_context_free(snow_context *context);
 
-/* The message of the last call that failed, one line; "" before any. NULL,
- * where there was no memory for a context: says so. */
+/* Returns the message of the last call that failed, one line without its end,
+ * or "" before any. The text stays until the next call that fails. Where
+ * `context` is NULL, since there was no memory for it, the message says so. */
 SNOW_API const char *snow_context_message(const snow_context *context);
 
-/* Receives warnings (a guess, bytes after the data), one line each; or NULL. */
+/* Receives a warning, one line: what was guessed or left out. */
 typedef void snow_warning_fn(void *user, const char *text);
+
+/* Sets who receives warnings; NULL: nobody, the default. */
 SNOW_API void snow_context_set_warning(
     snow_context *context, snow_warning_fn *warning, void *user);
 
-/* Whether a picture is to end now, with STOPPED (snow_settings.stop). Called
- * often, by the thread that called the library; not for the same context. */
+/* Returns whether a picture is to end now, with STOPPED (snow_settings.stop).
+ * It is called often, by the thread that called the library, and must not call
+ * the library with the same context. */
 typedef bool snow_stop_fn(void *user);
 
-/* What a long call is doing; slabs of a file are read in SNOW_STAGE_ENCODE. */
+/* What a long call is doing. Slabs of a file that is drawn out of core are read
+ * in SNOW_STAGE_ENCODE. */
 typedef enum snow_stage {
     SNOW_STAGE_READ = 0, /* a volume is opened, made or measured */
     SNOW_STAGE_ENCODE,   /* of a picture: classify, shade and encode */
@@ -59,18 +79,26 @@ typedef enum snow_stage {
     SNOW_STAGE_WRITE     /* a volume or a picture is saved */
 } snow_stage;
 
-/* Receives the progress of a long stage, rising to 1; true ends the call with
- * STOPPED. Called as snow_stop_fn, at most 20 times a second. Or NULL. */
+/* Receives the progress of a long stage, which rises to 1. It returns true to
+ * end the call with STOPPED. It is called as a snow_stop_fn is, at most 20
+ * times a second. */
 typedef bool snow_progress_fn(void *user, snow_stage stage, double fraction);
+
+/* Sets who receives progress; NULL: nobody, the default. */
 SNOW_API void snow_context_set_progress(
     snow_context *context, snow_progress_fn *progress, void *user);
 
-/* The most bytes that its objects may hold together; 0: no limit. */
-SNOW_API void snow_context_set_memory_limit(snow_context *, uint64_t bytes);
+/* Sets the most bytes that the context's objects may hold together; 0, the
+ * default: no limit. A call that needs more returns NO_MEMORY. */
+SNOW_API void snow_context_set_memory_limit(
+    snow_context *context, uint64_t bytes);
 
-/* Bytes its objects hold, the most ever held, and bytes read, as stored. */
+/* Return the bytes that the context's objects hold now, and the most that they
+ * ever held. */
 SNOW_API uint64_t snow_context_bytes(const snow_context *context);
 SNOW_API uint64_t snow_context_peak_bytes(const snow_context *context);
+
+/* Returns how many bytes were read of files, as they are stored there. */
 SNOW_API uint64_t snow_context_bytes_read(const snow_context *context);
 
 #endif

@@ -1,6 +1,9 @@
-/* snowglass/image.h - the picture: float pixels, premultiplied, linear, row 0
- * on top. Two channels are grey and alpha, four red, green, blue and alpha. One
- * is an array of values (modes mean and sum, depths), NaN for none. */
+/* snowglass/image.h - a picture of floats, and its files.
+ *
+ * Pixels are rows of floats, row 0 on top. Four channels are red, green, blue
+ * and alpha, two are grey and alpha; colours are multiplied by alpha
+ * (premultiplied) and linear as stored. One channel is an array of values, as
+ * of modes mean and sum and of depths, where NaN stands for none. */
 #ifndef SNOWGLASS_IMAGE_H
 #define SNOWGLASS_IMAGE_H
 
@@ -9,23 +12,31 @@
 typedef struct snow_image snow_image;
 typedef struct snow_overlay snow_overlay; /* snowglass/overlay.h */
 
-/* Transparent, or zeros of 1 channel; 1 to 32768 pixels a side. */
+/* Makes a transparent picture, or zeros where there is one channel. Sides are 1
+ * to 32768 pixels, and channels 1, 2 or 4. */
 SNOW_API snow_status snow_image_new(snow_context *context, int width,
     int height, int channels, snow_image **out);
 SNOW_API void snow_image_free(snow_image *image);
+
+/* Return the size in pixels, and the floats of a pixel. */
 SNOW_API int snow_image_width(const snow_image *image);
 SNOW_API int snow_image_height(const snow_image *image);
 SNOW_API int snow_image_channels(const snow_image *image);
-/* Pixel (x, y) is at [((size_t)y * width + x) * channels]; data: to read. */
+
+/* Return the pixels: to write, or only to read. Pixel (x, y) begins at
+ * [((size_t)y * width + x) * channels]. */
 SNOW_API float *snow_image_pixels(snow_image *image);
 SNOW_API const float *snow_image_data(const snow_image *image);
 
-/* 64-bit FNV-1a of sizes and floats (little endian, -0 as 0, one NaN). */
+/* Returns a hash of sizes and pixels: the 64-bit FNV-1a of their bytes in little
+ * endian, where -0 counts as 0 and all NaN as one. Equal pictures have equal
+ * hashes on all machines. */
 SNOW_API uint64_t snow_image_checksum(const snow_image *image);
 
+/* How a picture is written. */
 typedef struct snow_image_options {
     size_t size;
-    bool flatten;                /* PNG, WebP, JPEG: lay it on `background` */
+    bool flatten;                /* PNG, WebP, JPEG: composite on background */
     double background[3];        /* red, green, blue, 0 to 1 */
     int bits;                    /* PNG: 8 or 16 bits a channel; 0 means 8 */
     bool overwrite;              /* replace an existing file */
@@ -35,41 +46,55 @@ typedef struct snow_image_options {
     bool unsynced;               /* does not wait for the disk */
 } snow_image_options;
 SNOW_RECORD(snow_image_options);
-/* Writes .png, .webp, .jpg, .jpeg (levels; JPEG on black without `flatten`),
- * .npy, .pfm, .exr, .tif, .tiff (floats), or "-", a PNG to standard output,
- * whole or not at all. `options` may be NULL. Errors: BAD_OUTPUT (it exists,
- * without `overwrite`), BAD_USAGE (what the format cannot hold), STOPPED. */
+
+/* Writes a picture to a file, whole or not at all. The suffix gives the format:
+ * .png, .webp, .jpg and .jpeg hold levels (JPEG on black, unless `flatten`);
+ * .npy, .pfm, .exr, .tif and .tiff hold floats. "-" is a PNG to standard
+ * output. Errors: BAD_OUTPUT (the file exists, without `overwrite`, or cannot
+ * be written), BAD_USAGE (what the format cannot hold), STOPPED. */
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
     const snow_image_options *options);
 
-/* What snow_image_save would refuse, by path, size and options. */
+/* Check what snow_image_save would refuse, before the picture is made: by path
+ * alone, or by path, size and options. Errors: those of snow_image_save. */
 SNOW_API snow_status snow_image_check_path(
     snow_context *context, const char *path, bool overwrite);
 SNOW_API snow_status snow_image_check(snow_context *context, const char *path,
     int width, int height, const snow_image_options *options);
 
-/* Of a path's suffix: the most bits a channel, 0 for floats, -1 for none;
- * whether it holds a depth. Suffix `index` (NULL past the end), and if built.
- */
+/* Returns the most bits a channel that the format of a path's suffix holds: 0
+ * for floats, -1 where the suffix is of no format. */
 SNOW_API int snow_image_format_bits(const char *path);
+
+/* Returns whether the format of a path's suffix holds a depth, too. */
 SNOW_API bool snow_image_format_has_depth(const char *path);
+
+/* Returns suffix `index` (from 0) of those that can be written, NULL past the
+ * end. *built: whether this build has what the format needs. */
 SNOW_API const char *snow_image_format_suffix(size_t index, bool *built);
 
-/* width * height * 3 bytes, the levels of a PNG of 8 bits on that background;
- * or with all options, on black unless `flatten`. */
+/* Fills width * height * 3 bytes with the levels of red, green and blue that a
+ * PNG of 8 bits on that background has. Errors: BAD_USAGE (a picture of one
+ * channel, which is values; a background beyond 0 to 1). */
 SNOW_API snow_status snow_image_to_rgb8(
     const snow_image *image, const double background[3], unsigned char *rgb);
+
+/* The same with the background and the overlay of options, on black unless
+ * `flatten`. Errors: as above. */
 SNOW_API snow_status snow_image_to_rgb8_with(const snow_image *image,
     const snow_image_options *options, unsigned char *rgb);
 
-/* Reads PNG, WebP, JPEG, NPY, PFM, EXR, TIFF, from a file or bytes, to four
- * channels; alpha is 1 where there is none. Errors: BAD_INPUT. */
+/* Reads a PNG, WebP, JPEG, NPY, PFM, EXR or TIFF as a picture of four channels;
+ * alpha is 1 where the file has none. Errors: BAD_INPUT. */
 SNOW_API snow_status snow_image_load(
     snow_context *context, const char *path, snow_image **out);
+
+/* The same from bytes in memory, which messages call `name`. */
 SNOW_API snow_status snow_image_load_memory(snow_context *context,
     const char *name, const void *bytes, size_t size, snow_image **out);
 
-/* Over four premultiplied channels, three where one is of PFM or JPEG. */
+/* How two pictures differ, over four premultiplied channels, or three where one
+ * comes of a file without alpha (PFM, JPEG). */
 typedef struct snow_image_difference {
     size_t size;
     double largest, mean; /* absolute difference; 0 when equal */
@@ -78,7 +103,10 @@ typedef struct snow_image_difference {
     int x, y;    /* a pixel of the largest difference */
 } snow_image_difference;
 SNOW_RECORD(snow_image_difference);
-/* NaN equals NaN only, an infinity itself only. Errors: DIFFERENT (sizes). */
+
+/* Compares two pictures of one size. OK says that they were compared, not that
+ * they are equal: see `largest`. NaN equals NaN only, an infinity itself only.
+ * Errors: DIFFERENT (the sizes differ; *out is not filled). */
 SNOW_API snow_status snow_image_compare(
     const snow_image *a, const snow_image *b, snow_image_difference *out);
 

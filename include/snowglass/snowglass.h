@@ -1,8 +1,5 @@
 /* snowglass/snowglass.h - volumes to pictures, in one process.
  *
- * Not included: ranks and comm (many processors), channels (mixed), insitu
- * (simulations), mpi, extend, look_file and recipe (in libsnowglass-recipe).
- *
  *   snow_context *context = NULL;
  *   snow_image *image = NULL;
  *   snow_status status = snow_context_new(NULL, &context);
@@ -15,23 +12,51 @@
  *   snow_image_free(image);
  *   snow_context_free(context);
  *
- * In loops: snow_volume_open, snow_transfer_new_for_volume, snow_view_fit, a
- * frame and snow_frame_render_bytes, whose bytes a window shows, or
- * snow_frame_render. Until 1.0 each minor version may change the interface. */
+ * For many pictures of one volume: open it (snow_volume_open), make its
+ * transfer function (snow_transfer_new_for_volume), place the camera
+ * (snow_view_default, snow_view_fit), make one frame (snow_frame_new), and call
+ * snow_frame_render_bytes, whose bytes a window shows, in a loop.
+ *
+ * This header includes status.h, context.h, image.h, volume.h, view.h,
+ * transfer.h, render.h and overlay.h. Others are included by name: comm.h and
+ * ranks.h (one picture by many processors), mpi.h, insitu.h (pictures of a
+ * running simulation), channels.h, extend.h, and, in the library
+ * libsnowglass-recipe, look_file.h and recipe.h.
+ *
+ * Words of these headers. "The paper" is Chih-Hsien Huang, Jen-Shiuh Liu and
+ * Don-Lin Yang, "Efficient Parallel Splatting Algorithm", Feng Chia University;
+ * its figures and sections are named by number. docs/NAME.md is a page of the
+ * documentation, which is installed beside the examples (share/doc). A look
+ * describes a transfer function before the volume is known: preset, colour map,
+ * range. An interesting voxel is one that is not transparent: its opacity is
+ * above the threshold. A sheet is the contribution of one slice, which is
+ * composited with the others. A strip is the part of the picture at the right
+ * that is left free for a legend.
+ *
+ * Until version 1.0 each minor version may change the interface. Within a minor
+ * version records grow only as context.h says. */
 #ifndef SNOWGLASS_SNOWGLASS_H
 #define SNOWGLASS_SNOWGLASS_H
 
 #include <snowglass/overlay.h>
 #include <snowglass/render.h>
 
-/* Version of these headers, for #if; snow_version: of the library, "0.1.0".
- * Instruction sets that this machine has, best last, and the one in use. */
+/* The version of these headers, for #if. */
 #define SNOWGLASS_VERSION_MAJOR 0
 #define SNOWGLASS_VERSION_MINOR 1
 #define SNOWGLASS_VERSION_PATCH 0
+
+/* Returns the version of the library that is linked, such as "0.1.0". */
 SNOW_API const char *snow_version(void);
+
+/* Returns the instruction sets that this machine has and the library uses,
+ * separated by spaces, the best one last. */
 SNOW_API const char *snow_isa_found(void);
+
+/* Returns the instruction set that pictures use by default. */
 SNOW_API const char *snow_isa_used(void);
-SNOW_API int snow_processors(void); /* that this process may use */
+
+/* Returns how many processors this process may use. */
+SNOW_API int snow_processors(void);
 
 #endif

@@ -1,10 +1,30 @@
-/* snowglass/status.h - what a call answers, and what holds for all calls.
+/* snowglass/status.h - what a call returns, and the rules for all calls.
  *
- * Results leave through out-parameters, which a failure does not change. New
- * objects belong to the caller, returned pointers to their object. Functions
- * that free or close accept NULL. Comments name errors without SNOW_STATUS_.
- * Besides those, an argument out of range is BAD_USAGE, and any call that makes
- * something can return NO_MEMORY. The tool exits with these values. */
+ * Errors. A function that can fail returns a snow_status, which is 0
+ * (SNOW_STATUS_OK) where it went well. The comments list a function's own
+ * errors, without SNOW_STATUS_. Besides those, each call returns BAD_USAGE for
+ * an argument out of its range, NO_MEMORY where it makes something and there is
+ * no room, and STOPPED where it takes long and the caller's functions
+ * (context.h) ask for it. The message, one line, is in the context. Messages
+ * name options as the tool does: --dims is the field `dims`.
+ *
+ * Results leave through out-parameters. A failure does not change pointers,
+ * records and single values; arrays and buffers that the caller provides
+ * (counts, pixels, texts) may hold a part of the result.
+ *
+ * Pointers are not NULL, unless a comment allows it. Texts that are looked up
+ * or opened are an exception: a name that is NULL is unknown, and a path that
+ * is NULL is BAD_USAGE. Functions that free or close accept NULL. Records of
+ * options, views, settings and looks that are only read may be NULL, for their
+ * defaults.
+ *
+ * Ownership. What a call makes in `out` is the caller's, who frees it. A
+ * pointer that a function returns belongs to the object that it was asked of,
+ * and lives as long as that. Options, views, settings and looks are read during
+ * the call and not kept, nor are their texts and arrays. A volume, transfer
+ * function or view may go before the frame that has drawn it.
+ *
+ * The tool exits with the values of snow_status. */
 #ifndef SNOWGLASS_STATUS_H
 #define SNOWGLASS_STATUS_H
 
@@ -21,7 +41,7 @@
 #define SNOW_PRINTF(text, first)
 #endif
 
-/* One list makes the enum, the names and the texts (never NULL). */
+/* X(NAME, value, text) of each status. */
 #define SNOW_STATUS_MAP(X)                                               \
     X(OK, 0, "done")                                                     \
     X(FAILED, 1, "rendering failed")                                     \
@@ -38,6 +58,7 @@ typedef enum snow_status {
 #undef SNOW_STATUS_ENUM
 } snow_status;
 
+/* Returns a line that describes a status; never NULL. */
 SNOW_API const char *snow_status_description(snow_status status);
 
 #endif
