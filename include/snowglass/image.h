@@ -28,9 +28,9 @@ SNOW_API int snow_image_channels(const snow_image *image);
 SNOW_API float *snow_image_pixels(snow_image *image);
 SNOW_API const float *snow_image_data(const snow_image *image);
 
-/* Returns a hash of sizes and pixels: the 64-bit FNV-1a of their bytes in little
- * endian, where -0 counts as 0 and all NaN as one. Equal pictures have equal
- * hashes on all machines. */
+/* Returns a hash of sizes and pixels: the 64-bit FNV-1a of their bytes in
+ * little endian, where -0 counts as 0 and all NaN as one. Equal pictures have
+ * equal hashes on all machines. */
 SNOW_API uint64_t snow_image_checksum(const snow_image *image);
 
 /* How a picture is written. */
