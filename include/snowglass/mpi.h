@@ -9,20 +9,27 @@
 #include <mpi.h>
 #include <snowglass/insitu.h>
 
-/* Collective over `group`, an intracommunicator: the same ranks over a
- * duplicate of it. All ranks succeed, or none. Free it (collective) before
- * MPI_Finalize. Errors: BAD_USAGE (MPI is not running, no such group), FAILED
- * (of MPI). `_fortran` takes comm%MPI_VAL, or the integer of the module mpi. */
+/* Collective over `group`, an intracommunicator: makes a communicator of the
+ * same ranks, over a duplicate of it. All ranks succeed, or none. Free it,
+ * which is collective, before MPI_Finalize. Errors: BAD_USAGE (MPI is not
+ * running, no such group), FAILED (of MPI). */
 SNOW_API snow_status snow_comm_new_mpi(
     snow_context *context, MPI_Comm group, snow_comm **out);
+
+/* The same for a communicator of Fortran: comm%MPI_VAL, or the integer of the
+ * module mpi. */
 SNOW_API snow_status snow_comm_new_mpi_fortran(
     snow_context *context, MPI_Fint group, snow_comm **out);
-/* Collective over `group`: pictures of a running simulation over such a
- * communicator, freed with them (snow_insitu_free, collective, before
- * MPI_Finalize). `context` NULL, and the one for Fortran: a context of their
- * own. Errors: as above; the message is in the context. */
+
+/* Collective over `group`: makes the pictures of a running simulation, over
+ * such a communicator, which is freed with them (snow_insitu_free, collective,
+ * before MPI_Finalize). Where `context` is NULL they have one of their own.
+ * Errors: as above; the message is in the context. */
 SNOW_API snow_status snow_insitu_new_mpi(
     snow_context *context, MPI_Comm group, snow_insitu **out);
-SNOW_API snow_status snow_insitu_new_mpi_fortran(MPI_Fint, snow_insitu **out);
+
+/* The same for a communicator of Fortran, with a context of their own. */
+SNOW_API snow_status snow_insitu_new_mpi_fortran(
+    MPI_Fint group, snow_insitu **out);
 
 #endif

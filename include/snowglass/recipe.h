@@ -9,7 +9,9 @@
 #include <snowglass/insitu.h>
 
 #define SNOW_RECIPE_POINTS_MAX 256
-/* By default texts are NULL; points of the camera are NaN: not given. */
+
+/* A recipe. By default texts are NULL; points of the camera are NaN: not
+ * given. */
 typedef struct snow_recipe {
     size_t size;
     const char *input, *output;    /* paths; in situ only a movie's pattern */
@@ -51,29 +53,48 @@ typedef struct snow_recipe {
     const char *measure;          /* of the tool; or NULL */
 } snow_recipe;
 SNOW_RECORD(snow_recipe);
-/* Texts live until snow_recipe_clear, which must follow; messages call the
- * bytes `name`. Errors: BAD_INPUT (no file; no JSON, with the line; a key). */
+
+/* Reads a recipe from a file. Its texts live until snow_recipe_clear, which
+ * must follow. Errors: BAD_INPUT (no file; no JSON, with the line; a key). */
 SNOW_API snow_status snow_recipe_load(
     snow_context *context, const char *path, snow_recipe *out);
+
+/* The same from bytes, which messages call `name`. */
 SNOW_API snow_status snow_recipe_parse(snow_context *context, const char *name,
     const char *text, size_t bytes, snow_recipe *out);
+
+/* Frees the texts of a recipe, and gives it all defaults. */
 SNOW_API void snow_recipe_clear(snow_recipe *recipe);
+
 /* Writes a recipe's text, as snow_look_write_json does. */
 SNOW_API snow_status snow_recipe_write(snow_context *context,
     const snow_recipe *recipe, char *text, size_t room, size_t *length);
-/* The look, over the recipe's memory, without the base of `tf`; the view, over
- * `usual` where none is named; the settings for a volume in `unit`. Errors:
- * BAD_USAGE (no such view; a unit that is no length). */
+
+/* Gives the look, whose arrays are the recipe's, without the base of `tf`. */
 SNOW_API snow_status snow_recipe_get_look(
     snow_context *context, const snow_recipe *recipe, snow_look *out);
+
+/* Gives the view; over `usual` where the recipe names none. Errors: BAD_USAGE
+ * (no such view). */
 SNOW_API snow_status snow_recipe_get_view(snow_context *context,
     const snow_recipe *recipe, const snow_view *usual, snow_view *out);
+
+/* Gives the settings for a volume in `unit`, with their opacity_length. Errors:
+ * BAD_USAGE (opacities of a millimetre, and a unit that is no length). */
 SNOW_API snow_status snow_recipe_get_settings(snow_context *context,
     const snow_recipe *recipe, const char *unit, snow_settings *out);
-/* Applies it all to pictures in situ, whose unit is a millimetre. Errors: as
- * above and of the setters; BAD_USAGE (a depth). Of a file: collective. */
-SNOW_API snow_status snow_recipe_apply(const snow_recipe *, snow_insitu *);
-SNOW_API snow_status snow_recipe_apply_text(snow_insitu *, const char *text);
-SNOW_API snow_status snow_recipe_apply_file(snow_insitu *, const char *path);
+
+/* Applies a recipe to pictures in situ, whose unit is a millimetre. Errors: as
+ * above and of the setters; BAD_USAGE (a depth). */
+SNOW_API snow_status snow_recipe_apply(
+    const snow_recipe *recipe, snow_insitu *insitu);
+
+/* The same from a text. */
+SNOW_API snow_status snow_recipe_apply_text(
+    snow_insitu *insitu, const char *text);
+
+/* Collective. The same from a file, which rank 0 reads. */
+SNOW_API snow_status snow_recipe_apply_file(
+    snow_insitu *insitu, const char *path);
 
 #endif
