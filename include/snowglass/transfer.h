@@ -75,7 +75,7 @@ typedef struct snow_look {
     size_t size;
     const char *name;             /* for people; NULL: none */
     const char *preset;           /* "linear", "ct-bone", ...; NULL: none */
-    const char *colormap;         /* replaces the colours; NULL: keep them */
+    const char *colormap;         /* replaces them; "reversed"; NULL: keep */
     const struct snow_look *base; /* as of snow_look_load; its name, points,
                                      domain, log, per_mm count; NULL: none */
     snow_range range;             /* over which points are spread */

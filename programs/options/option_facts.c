@@ -16,9 +16,7 @@ int options_bits(const options *opts) {
 }
 
 bool options_place_colors(const options *opts) {
-    snow_color_point point;
-    int map = opts->colormap ? snow_colormap_from_name(opts->colormap) : -1;
-    return map >= 0 && snow_colormap_points((size_t)map, &point, 1) == 0;
+    return opts->colormap && strchr(opts->colormap, ':');
 }
 
 bool options_has_axes(const options *opts) {

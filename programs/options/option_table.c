@@ -100,6 +100,7 @@ const option_row option_table[] = {
      "a built-in transfer function (default: made from the histogram)"},
     {"colormap", 'c', "NAME|LIST", TOPIC_LOOK, LOOKED, read_colormap,
      FIELD(colormap), 0, 0, "colours along the range, or at data values, such as 60:#000000,255:#ff8800; "
+     "NAME_r is a map reversed, and reversed the colours of the look; "
      "with --preset labels those of single labels (default grey, or the "
      "preset's)"},
     {"opacity", 0, "V:O,V:O", TOPIC_LOOK, LOOKED & ~SLICE, read_points,

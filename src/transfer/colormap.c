@@ -18,7 +18,8 @@
  *   tab10      ten colours for categories, Tableau's of 2016 (matplotlib)
  * A new map needs a table here and a line in `maps`.  With an index that is
  * larger by their number it is reversed, and its name ends in _r.  A list of
- * colours at data values is a name too. */
+ * colours at data values is a name too, and "reversed" are the look's own
+ * colours the other way round. */
 #include "transfer/look.h"
 
 #include <math.h>
@@ -167,6 +168,10 @@ size_t snow_colormap_list(const char *text, snow_color_point *points) {
     return 0;
 }
 
+bool snow_colormap_is_reversed(const char *name) {
+    return snow_same_name(name, "reversed");
+}
+
 int snow_colormap_from_name(const char *name) {
     snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
 
@@ -178,6 +183,8 @@ int snow_colormap_from_name(const char *name) {
     for (size_t i = 0; i < 2 * map_count; i++)
         if (snow_same_name(name, maps[i % map_count].names[i / map_count]))
             return (int)i;
+    if (name && snow_colormap_is_reversed(name))
+        return (int)(2 * map_count + 1);
     return name && snow_colormap_list(name, points) ? (int)(2 * map_count) : -1;
 }
 
@@ -198,10 +205,38 @@ size_t snow_colormap_points(size_t index, snow_color_point *points,
     return count;
 }
 
+/* The share of a value, as snow_transfer_builder_place takes it. */
+static double share_of(const snow_transfer_builder *builder, double low,
+                       double high, double value) {
+    if (!builder->around_0 || !(low < 0) || !(high > 0))
+        return snow_share_on(builder->scale, low, high, value);
+    return value < 0
+               ? snow_share_on(builder->scale, low, 0, value) / 2
+               : 0.5 + snow_share_on(builder->scale, 0, high, value) / 2;
+}
+
+void snow_transfer_builder_reverse(snow_transfer_builder *builder) {
+    snow_color_point *points = builder->colors;
+    const size_t count = builder->color_count;
+    const double low = points[0].value, high = points[count - 1].value;
+    if (!(low < high))
+        return;
+    for (size_t i = 0; i < count / 2; i++) {
+        const snow_color_point first = points[i];
+        points[i] = points[count - 1 - i];
+        points[count - 1 - i] = first;
+    }
+    for (size_t i = 0; i < count; i++)
+        points[i].value = snow_transfer_builder_place(
+            builder, low, high,
+            1 - share_of(builder, low, high, points[i].value));
+    builder->name = "reversed";
+}
+
 void snow_transfer_builder_colormap(snow_transfer_builder *builder,
                                     const char *name, double low, double high) {
     const size_t found = (size_t)snow_colormap_from_name(name);
-    if (found >= 2 * map_count) { /* where they are */
+    if (found == 2 * map_count) { /* where they are */
         builder->name = "own colours";
         builder->color_count = snow_colormap_list(name, builder->colors);
         builder->low = builder->colors[0].value;

@@ -247,4 +247,9 @@ size_t snow_colormap_list(const char *text, snow_color_point *points);
 void snow_transfer_builder_colormap(snow_transfer_builder *builder,
                                     const char *name, double low, double high);
 
+/* "reversed": colours of whatever gives them, what is at t between the first
+ * and the last of them at 1 - t. */
+bool snow_colormap_is_reversed(const char *name);
+void snow_transfer_builder_reverse(snow_transfer_builder *builder);
+
 #endif

@@ -378,6 +378,7 @@ int snow_look_slopes(const snow_look *look, const snow_volume_info *info) {
 /* A look, and the points that stand for a preset. */
 typedef struct known_look {
     snow_look look, base;
+    bool reversed; /* instead of a map of that name */
 } known_look;
 
 /* The look's own points become its base. */
@@ -414,6 +415,10 @@ static snow_status read_look(snow_context *context, const snow_look *given,
         SNOW_TRY(SNOW_RECORD_READ(context, snow_look, look->base, &out->base));
         out->look.base = &out->base;
     }
+    out->reversed =
+        look->colormap && snow_colormap_is_reversed(look->colormap);
+    if (out->reversed)
+        out->look.colormap = NULL;
     return SNOW_STATUS_OK;
 }
 
@@ -445,6 +450,8 @@ static snow_status make_among(snow_comm *comm, const snow_volume *volume,
         snow_transfer_builder_symlog(&histogram, look, &builder);
         status = build_look(&histogram, look, &builder);
         snow_histogram_free(&histogram);
+        if (known.reversed && status == SNOW_STATUS_OK && !builder.labels)
+            snow_transfer_builder_reverse(&builder);
         if (status == SNOW_STATUS_OK)
             status = build(volume, &builder, look, &transfer);
     }

@@ -770,6 +770,40 @@ static void a_list_of_colours_is_a_map(void **state) {
     }
 }
 
+/* Maps by their names with _r, presets by the name for any. */
+static void reversed_colours_at_t_are_those_of_1_minus_t(void **state) {
+    static const double row[] = {-300, 0, 40, 250, 1200};
+    static const char *const presets[] = {"ct-bone", "ct-cropped-volume-bone",
+                                          "ct-aaa", "mr-default", "signed"};
+    looks_fixture *f = *state;
+    snow_volume *volume = looks_row(f, SNOW_TYPE_FLOAT64, row, 5);
+    size_t maps = 0;
+    while (snow_colormap_name(maps))
+        maps++;
+    for (size_t i = 0; i < maps + 5; i++) {
+        const char *name = i < maps ? snow_colormap_name(i) : NULL;
+        char other[40];
+        snow_look look = {.preset = i < maps ? "linear" : presets[i - maps],
+                          .colormap = name};
+        const snow_transfer *plain = looks_of(f, volume, look);
+        snprintf(other, sizeof other, name ? "%s_r" : "Reversed%s",
+                 name ? name : "");
+        look.colormap = other;
+        const snow_transfer *turned = looks_of(f, volume, look);
+        double low, high, a[4], b[4];
+        snow_transfer_domain(plain, &low, &high);
+        for (int n = 0; n <= 200; n++) {
+            const double at = n / 200.0 + (n % 20 ? 0 : 1e-7); /* no step */
+            snow_transfer_evaluate(plain, low + at * (high - low), a);
+            snow_transfer_evaluate(turned, high - at * (high - low), b);
+            for (int c = 0; c < 3; c++)
+                assert_true(fabs(a[c] - b[c]) < 1e-6);
+            snow_transfer_evaluate(turned, low + at * (high - low), b);
+            assert_true(fabs(a[3] - b[3]) < 1e-12); /* opacities stay */
+        }
+    }
+}
+
 static void what_is_no_list_of_colours_is_refused(void **state) {
     static const char *const wrong[] = {
         "",          ":",           "1:",          "1:#",
@@ -817,6 +851,7 @@ int main(void) {
         LOOKS_TEST(a_window_of_a_program_bounds_the_look),
         LOOKS_TEST(one_heap_of_values_is_a_solid_block),
         LOOKS_TEST(a_list_of_colours_is_a_map),
+        LOOKS_TEST(reversed_colours_at_t_are_those_of_1_minus_t),
         cmocka_unit_test(what_is_no_list_of_colours_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
