@@ -80,11 +80,13 @@ static void answer_command(drawing *d, viewer_state *s, outbox *box,
 }
 
 /* As a text, which keeps the order and the digits of its keys. */
-void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree) {
+void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree,
+                        bool look) {
     char *text = tree ? json_dumps(tree, JSON_INDENT(2) | JSON_FORM) : NULL;
     if (text)
         answer_put(box, client, MESSAGE_PLAIN,
-                   json_pack("{s:s, s:s}", "t", "recipe", "text", text));
+                   json_pack("{s:s, s:s}", "t", look ? "look-file" : "recipe",
+                             "text", text));
     free(text);
 }
 
@@ -117,19 +119,33 @@ static bool has_changed(void *user) {
     return state_is_stale(b->state, b->revision);
 }
 
-/* {"what": "thumbnail", "preset": "ct-bone", "pane": 4}: is
- * asked again where a page changes something meanwhile. */
+/* What a thumbnail shows: {"what": "thumbnail", "preset": "ct-bone", "pane": 4},
+ * with a "colormap" in its place, or as a projection, "mode": "mip".  False: it
+ * is nothing that there is. */
+static bool read_thumbnail(const json_t *tree, thumbnail *out) {
+    const char *mode = json_string_value(json_object_get(tree, "mode"));
+    const json_t *map = json_object_get(tree, "colormap");
+    *out = (thumbnail){.preset = json_string_value(
+                           json_object_get(tree, "preset")),
+                       .colormap = json_string_value(map),
+                       .mip = mode && strcmp(mode, "mip") == 0};
+    return out->preset &&
+           (!*out->preset || snow_preset_from_name(out->preset) >= 0) &&
+           (!map || (out->colormap &&
+                     snow_colormap_from_name(out->colormap) >= 0));
+}
+
+/* Is asked again where a page changes something meanwhile. */
 static void answer_thumbnail(drawing *d, viewer_state *s, outbox *box,
                              uint64_t client, json_t *tree) {
     begun now = {s, state_revision(s)};
-    const char *preset = json_string_value(json_object_get(tree, "preset"));
+    thumbnail of;
     json_int_t pane = json_integer_value(json_object_get(tree, "pane"));
     snow_image *image = NULL;
-    if (!d->state.volume || !preset || pane < 4 || pane > 255 ||
-        (*preset && snow_preset_from_name(preset) < 0))
+    if (!d->state.volume || pane < 4 || pane > 255 || !read_thumbnail(tree, &of))
         return;
     int done =
-        small_thumbnail(d, preset, THUMBNAIL_SIDE, has_changed, &now, &image);
+        small_thumbnail(d, &of, THUMBNAIL_SIDE, has_changed, &now, &image);
     if (done == EXIT_INTERRUPTED) {
         json_object_set_new(tree, "again", json_true());
         state_ask(s, client, json_incref(tree));
@@ -243,6 +259,17 @@ static int answer_depth(drawing *d, outbox *box, uint64_t client,
     return CONTINUE;
 }
 
+/* The recipe's file, or that of its look alone. */
+static void answer_file(drawing *d, viewer_state *s, outbox *box,
+                        const viewer_question *question, bool look) {
+    json_t *newest = recipe_for(s, question), *tree = NULL;
+    if (drawing_apply(d, newest) == CONTINUE)
+        tree = look ? look_file_tree(d) : recipe_file_tree(d);
+    answer_recipe_text(box, question->client, tree, look);
+    json_decref(tree);
+    json_decref(newest);
+}
+
 /* What needs the newest state, which may not be drawn yet. */
 static bool answer_state(drawing *d, viewer_state *s, outbox *box,
                          const viewer_question *question, const char *what) {
@@ -250,14 +277,11 @@ static bool answer_state(drawing *d, viewer_state *s, outbox *box,
         answer_command(d, s, box, question, VERB_RENDER);
     else if (strcmp(what, "movie-command") == 0)
         answer_command(d, s, box, question, VERB_TURNTABLE);
-    else if (strcmp(what, "recipe") == 0) {
-        json_t *newest = recipe_for(s, question);
-        json_t *tree =
-            drawing_apply(d, newest) == CONTINUE ? recipe_file_tree(d) : NULL;
-        answer_recipe_text(box, question->client, tree);
-        json_decref(tree);
-        json_decref(newest);
-    } else if (strcmp(what, "fit") == 0)
+    else if (strcmp(what, "recipe") == 0)
+        answer_file(d, s, box, question, false);
+    else if (strcmp(what, "look-file") == 0)
+        answer_file(d, s, box, question, true);
+    else if (strcmp(what, "fit") == 0)
         answer_fit(d, s, box, question->client);
     else if (strcmp(what, "thumbnail") == 0)
         answer_thumbnail(d, s, box, question->client, question->tree);

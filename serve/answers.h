@@ -14,6 +14,14 @@
 void answer_info(drawing *d, outbox *box);
 void answer_look(drawing *d, outbox *box);
 void answer_kept(drawing *d, viewer_state *s, uint32_t revision);
+
+/* What a recipe needs for the look to stay as it is (kept_look.h); NULL: keys
+ * cannot say it, as those of labels, of channels, and of projections, whose
+ * values are spread anew. */
+json_t *answer_look_keys(const drawing *d);
+
+/* The name of the map whose colours a look has, a new reference; or NULL. */
+json_t *answer_colormap(const snow_look *look);
 void answer_figures(drawing *d, double hidden, outbox *box);
 
 /* Says once that the file was replaced: `told` keeps the identity that was
@@ -43,8 +51,9 @@ void answer_no_probe(outbox *box, uint64_t client, const json_t *tree);
 void answer_put(outbox *box, uint64_t client, message_topic about,
                 json_t *tree);
 
-/* A recipe, as a text. */
-void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree);
+/* A recipe, as a text; or what one has of a look alone. */
+void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree,
+                        bool look);
 
 /* Answers one page.  SNOW_STATUS_NO_MEMORY: had no room, and has answered
  * nothing. */

@@ -129,6 +129,7 @@ void answer_info(drawing *d, outbox *box) {
     json_object_set_new(tree, "file", json_string(d->identity));
     json_object_set_new(tree, "opened", json_integer(d->opened));
     json_object_set_new(tree, "value_unit", json_string(info->value_unit));
+    json_object_set_new(tree, "modality", json_string(info->modality));
     json_object_set_new(tree, "window",
                         json_pack("[f,f]", window[0], window[1]));
     json_object_set_new(
@@ -230,10 +231,11 @@ static json_t *channels_of(const drawing *d) {
     return list;
 }
 
-/* The name of the map whose colours these are; or each at its value. */
-static json_t *colormap_of(const snow_look *look) {
+json_t *answer_colormap(const snow_look *look) {
     snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
-    size_t same = 0, count;
+    size_t same = 0, count, maps = 0;
+    while (snow_colormap_name(maps))
+        maps++; /* and as many that are reversed */
     for (size_t i = 0;
          (count = snow_colormap_points(i, points, SNOW_COLORMAP_POINTS_MAX));
          i++) {
@@ -242,16 +244,15 @@ static json_t *colormap_of(const snow_look *look) {
                               3 * sizeof(double)) == 0;
              same++)
             continue;
-        if (count == look->color_count && same == count)
-            return json_string(snow_colormap_name(i));
+        if (count != look->color_count || same != count)
+            continue;
+        return i < maps ? json_string(snow_colormap_name(i))
+                        : json_sprintf("%s_r", snow_colormap_name(i - maps));
     }
     return NULL;
 }
 
-/* What a recipe needs for the look to stay as it is (kept_look.h); NULL: keys
- * cannot say it, as those of labels, of channels, and of projections, whose
- * values are spread anew. */
-static json_t *look_keys(const drawing *d) {
+json_t *answer_look_keys(const drawing *d) {
     const snow_transfer *transfer = d->state.transfer;
     snow_look look = {.size = sizeof look};
     double low, high;
@@ -265,7 +266,7 @@ static json_t *look_keys(const drawing *d) {
         "{s:[f,f], s:o, s:s}", "range", low, high, "opacity",
         points_of(look.opacities, look.opacity_count), "shade",
         d->state.settings.shade == SNOW_SHADE_PHONG ? "phong" : "none");
-    json_t *map = look.name ? NULL : colormap_of(&look);
+    json_t *map = look.name ? NULL : answer_colormap(&look);
     if (look.name)
         json_object_set_new(keys, "preset", json_string(look.name));
     else if (map)
@@ -274,7 +275,7 @@ static json_t *look_keys(const drawing *d) {
 }
 
 void answer_kept(drawing *d, viewer_state *s, uint32_t revision) {
-    state_note_look(s, revision, look_keys(d));
+    state_note_look(s, revision, answer_look_keys(d));
 }
 
 void answer_look(drawing *d, outbox *box) {
@@ -287,9 +288,9 @@ void answer_look(drawing *d, outbox *box) {
     answer_put(
         box, 0, MESSAGE_LOOK,
         json_pack(
-            "{s:s, s:f, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b, s:o, s:o, "
-            "s:o}",
-            "t", "look", "legend", d->state.strip, "low", low, "high", high,
+            "{s:s, s:s*, s:o*, s:f, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b, s:o, "
+            "s:o, s:o}",
+            "t", "look", "preset", look.name, "map", answer_colormap(&look), "legend", d->state.strip, "low", low, "high", high,
             "count", (json_int_t)look.opacity_count, "opacity",
             points_of(look.opacities, look.opacity_count), "gradient",
             points_of(look.gradient_opacities, look.gradient_opacity_count),

@@ -294,7 +294,7 @@ static void answer(const live *l, viewer_state *s, outbox *box,
     } else if (strcmp(what, "histogram") == 0) {
         put_counts(l, box, question->client);
     } else if (strcmp(what, "recipe") == 0) {
-        answer_recipe_text(box, question->client, l->recipe);
+        answer_recipe_text(box, question->client, l->recipe, false);
     } else if (strstr(what, "command") || strcmp(what, "depth") == 0) {
         snprintf(line, sizeof line,
                  "The simulation draws by its recipe, %.300s, which this page "

@@ -1,7 +1,10 @@
 /* recipe_file.c - implements recipe_file.h. */
 #include "recipe_file.h"
+#include "answers.h"
 #include "options/config.h"
 #include "options/config_paths.h"
+
+#include <snowglass/recipe.h>
 
 #include <limits.h>
 #include <stdio.h>
@@ -54,5 +57,64 @@ json_t *recipe_first(const options *opts) {
                                            "overwrite", "bits"};
     for (size_t i = 0; i < sizeof unwanted / sizeof *unwanted; i++)
         json_object_del(tree, unwanted[i]);
+    return tree;
+}
+
+static bool has_one(const json_t *tree, const char *const *keys) {
+    for (; *keys; keys++)
+        if (json_object_get(tree, *keys))
+            return true;
+    return false;
+}
+
+/* Of a projection colours and their ends, which are all that it has. */
+static json_t *projected(const drawing *d) {
+    snow_look look = {.size = sizeof look};
+    double low, high;
+    if (!mode_is_projection(d->opts.mode) ||
+        snow_transfer_get_look(d->state.transfer, &look) != SNOW_STATUS_OK)
+        return NULL;
+    snow_transfer_domain(d->state.transfer, &low, &high);
+    return json_pack("{s:[f,f], s:o*}", "range", low, high, "colormap",
+                     answer_colormap(&look));
+}
+
+/* What was chosen from the values becomes numbers, so that another volume gets
+ * the same look; a preset stays one, since it says how it is spread. */
+static void add_chosen(const drawing *d, json_t *tree) {
+    static const char *const whole[] = {"preset", "tf", "channel", NULL},
+                             *const ends[] = {"window", NULL};
+    if (has_one(tree, whole))
+        return;
+    json_t *chosen = answer_look_keys(d);
+    if (!chosen && snow_transfer_label(d->state.transfer, 0))
+        chosen = json_pack("{s:s}", "preset", "labels");
+    if (!chosen)
+        chosen = projected(d);
+    if (has_one(tree, ends))
+        json_object_del(chosen, "range");
+    if (json_object_get(tree, "colormap"))
+        json_object_del(chosen, "preset");
+    json_object_update_missing(tree, chosen);
+    json_decref(chosen);
+}
+
+json_t *look_file_tree(const drawing *d) {
+    static const char *const names[] = {
+        "version", "preset",           "colormap", "tf",     "scale",
+        "opacity", "gradient-opacity", "range",    "window", "opacity-unit",
+        "shade",   "material"};
+    const channel_list *mixed = &d->state.channels.list;
+    json_t *all = recipe_file_tree(d), *tree = json_object();
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (json_object_get(all, names[i]))
+            json_object_set(tree, names[i], json_object_get(all, names[i]));
+    if (mixed->count) {
+        char text[1024];
+        channels_text(mixed, text, sizeof text);
+        json_object_set_new(tree, "channel", json_string(text));
+    }
+    add_chosen(d, tree);
+    json_decref(all);
     return tree;
 }

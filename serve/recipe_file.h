@@ -13,4 +13,8 @@ json_t *recipe_file_tree(const drawing *d);
 /* The state that pages begin with; NULL: no memory. */
 json_t *recipe_first(const options *opts);
 
+/* What it has of the look alone: colours, opacity, range, shading.  It may be
+ * given to any volume. */
+json_t *look_file_tree(const drawing *d);
+
 #endif

@@ -81,7 +81,9 @@ export class Channels {
                     this.put(index, i ? {5: value} : {4: value});
             }));
         const opacity = slider(`opacity of ${name}`, 0, 1, 0.02, this.store, value => this.put(index, {6: value}));
-        const more = make('div', {className: 'row'}, color, ...ends, opacity);
+        const auto = button('Auto', `Range of ${name} as the file has it, or its values`,
+            () => this.put(index, {4: 0, 5: 0}));
+        const more = make('div', {className: 'row'}, color, ...ends, auto, opacity);
         return {box: box.box, color, ends, opacity, more, element: make('div', {}, box.label, more)};
     }
 

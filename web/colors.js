@@ -1,7 +1,7 @@
 // colors.js - colours at data values, in the place of a map with a name: the
 // recipe's colormap is then "60:#000000,255:#ff8800".
 
-import {apart, button, fill, ink, make, near, number, row, section, show} from './controls.js';
+import {apart, button, check, fill, ink, make, near, number, row, section, show} from './controls.js';
 import {mixed} from './look.js';
 import {known} from './store.js';
 
@@ -36,6 +36,16 @@ export function ranged({low, high}, {colormap}, [a, b]) {
         [near([a + (value - low) / (high - low || 1) * (b - a)], b - a, 6)[0], color]))} : {range};
 }
 
+const REVERSED = 'reversed'; // the colours of a preset, whatever they are
+
+/** The name of a map that has the same colours the other way round.
+ * @param {string} map */
+const turned = map => map.endsWith('_r') ? map.slice(0, -2) : `${map}_r`;
+
+/** A map's name without that.
+ * @param {string} [map] */
+export const upright = (map = '') => map === REVERSED ? '' : map.replace(/_r$/, '');
+
 export class Colors {
     /** @param {import('./store.js').Store} store */
     constructor(store) {
@@ -43,6 +53,10 @@ export class Colors {
         this.list = make('div', {});
         /** @type {ReturnType<Colors['row']>[]} */
         this.rows = [];
+        /** Own colours that were inverted, and as they were.
+         * @type {{from: string, to: string}|null} */
+        this.turn = null;
+        this.invert = check('inverted colours', on => this.turnTo(on));
         this.element = section('Colours', false, this.list, make('div', {className: 'row'},
             button('Add', 'Add a colour', () => this.add())));
     }
@@ -60,6 +74,31 @@ export class Colors {
         const {low, high} = known(this.store.look);
         return ownColors(this.store.keys.colormap) ?? Array.from({length: FIRST}, (_, i) =>
             this.at(low + (high - low) * i / (FIRST - 1)));
+    }
+
+    get inverted() {
+        const {keys: {colormap}, look} = this.store, map = colormap ?? look?.map ?? '';
+        return ownColors(map) ? this.turn?.to === map : map === REVERSED || map.endsWith('_r');
+    }
+
+    /** The colours of a map of a name, of a list, or of the preset in use, the other way round.
+     * @param {boolean} on */
+    turnTo(on) {
+        const {store} = this, {keys: {colormap, preset}} = store, look = known(store.look);
+        const own = ownColors(colormap), map = colormap ?? look.map;
+        if (on === this.inverted)
+            return;
+        if (own && colormap) {
+            const low = own[0][0], high = own[own.length - 1][0];
+            this.turn = on ? {from: colormap, to: text(own.map(([value, color]) =>
+                [near([low + high - value], high - low || 1, 6)[0], color]))} : this.turn;
+            store.set({colormap: on ? this.turn?.to : this.turn?.from});
+        } else if (colormap === REVERSED) {
+            store.set({colormap: null});
+        } else {
+            store.set(map ? {colormap: turned(map)} : {colormap: REVERSED,
+                ...!preset && look.preset ? {preset: look.preset} : {}});
+        }
     }
 
     /** @param {ColorPoint[]} points */
@@ -92,6 +131,8 @@ export class Colors {
 
     update() {
         const {look} = this.store;
+        this.invert.box.checked = this.inverted;
+        this.invert.label.hidden = Boolean(look?.labels?.length) || mixed(look);
         this.element.hidden = !look || Boolean(look.labels?.length) || mixed(look);
         if (!look || this.element.hidden)
             return;

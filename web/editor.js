@@ -1,8 +1,10 @@
 // editor.js - the transfer function over the histogram: points are dragged,
 // added, removed, or set as numbers.  The same for the opacity by gradient.
 
-import {button, listen, make, number, row, short, show, surface} from './controls.js';
+import {Axis, EDGE} from './axis.js';
+import {button, listen, make, number, row, short, show, slider, surface} from './controls.js';
 import {STEPS} from './keys.js';
+import {unitOf} from './look.js';
 
 /** @typedef {import('./store.js').Store} Store */
 /** @typedef {import('./types').Point} Point */
@@ -13,7 +15,8 @@ import {STEPS} from './keys.js';
  *   range: (store: Store) => import('./types').Histogram|null}} Kind */
 
 const NEAR = 12; // pixels
-const EDGE = 8;
+const NEARER = 1.5; // by a step of the axis
+const REST = 200; // ms after which values are counted anew
 
 /** @type {Kind} */
 export const BY_VALUE = {key: 'opacity', name: 'value',
@@ -39,10 +42,22 @@ export class Editor {
         this.from = null;
         /** @type {unknown[]} */
         this.drawn = []; // what is shown
+        this.axis = new Axis(() => this.all);
+        /** The counts of the part that is shown, and of which parts they were asked for.
+         * @type {import('./types').Histogram|null} */
+        this.closer = null;
+        /** @type {Set<string>} */
+        this.asked = new Set();
+        this.waiting = 0;
         this.canvas = make('canvas', {className: 'editor', tabIndex: 0,
             role: 'img', 'aria-label': `Opacity by ${kind.name}, over the histogram. ` +
             'Arrow keys move the chosen point, Page keys choose another, Insert ' +
-            'adds one, Delete removes it.'});
+            'adds one, Delete removes it; plus and minus zoom the values, 0 shows all.'});
+        this.place = slider(`which part of the ${kind.name}s is shown`, 0, 1, 0.01, store, share => {
+            const [low, high] = this.axis.span, [first, last] = this.all;
+            this.seen(this.axis.show(first + share * (last - first - high + low), high - low));
+        });
+        this.ends = ['low', 'unit', 'high'].map(() => make('span', {}));
         this.value = number(`${kind.name} of the chosen point`, value => this.put(value, null));
         this.opacity = number(`opacity at the chosen ${kind.name}`,
             value => this.put(null, Math.max(0, Math.min(1, value))), 0.01);
@@ -60,7 +75,11 @@ export class Editor {
             this.draw();
         });
         scale.setAttribute('aria-pressed', `${this.log}`);
-        return make('div', {}, this.canvas,
+        const zooms = make('div', {className: 'row'},
+            button('\u2212', 'Zoom out of the values (wheel)', () => this.nearer(1 / NEARER)),
+            button('+', 'Zoom into the values (wheel)', () => this.nearer(NEARER)),
+            button('All values', 'Show all values', () => this.seen(this.axis.show(-Infinity, Infinity))), this.place);
+        return make('div', {}, this.canvas, make('div', {className: 'axis'}, ...this.ends), zooms,
             row(this.kind === BY_VALUE ? 'Value' : 'Gradient', this.value,
                 make('label', {}, 'Opacity ', this.opacity)),
             make('div', {className: 'row'},
@@ -90,6 +109,11 @@ export class Editor {
 
     /** What the axis spans: the histogram, and the points. */
     get span() {
+        return this.axis.span;
+    }
+
+    /** @returns {import('./types').Pair} */
+    get all() {
         const histogram = this.kind.range(this.store), points = this.points;
         const low = Math.min(histogram?.lo ?? Infinity, points[0]?.[0] ?? Infinity);
         const high = Math.max(histogram?.hi ?? -Infinity, points.at(-1)?.[0] ?? -Infinity);
@@ -98,8 +122,7 @@ export class Editor {
 
     /** @param {number} value */
     x(value) {
-        const [low, high] = this.span;
-        return EDGE + (value - low) / (high - low) * (this.canvas.clientWidth - 2 * EDGE);
+        return this.axis.x(value, this.canvas.clientWidth);
     }
 
     /** @param {number} opacity */
@@ -115,9 +138,8 @@ export class Editor {
      * @param {MouseEvent} event
      * @returns {Place} */
     at(event) {
-        const {offsetX: x, offsetY: y} = event, [low, high] = this.span;
-        return {x, y,
-            value: low + (x - EDGE) / (this.canvas.clientWidth - 2 * EDGE) * (high - low),
+        const {offsetX: x, offsetY: y} = event;
+        return {x, y, value: this.axis.value(x, this.canvas.clientWidth),
             opacity: Math.max(0, Math.min(1, (this.bottom - y) / (this.bottom - EDGE)))};
     }
 
@@ -229,6 +251,63 @@ export class Editor {
         this.store.end();
     }
 
+    /** Zooms about the pointer, and moves along where it turns to the side; where all is
+     * shown, the wheel is the page's.
+     * @param {WheelEvent} event */
+    wheel(event) {
+        const {deltaX, deltaY} = event;
+        return this.seen(Math.abs(deltaX) > Math.abs(deltaY)
+            ? this.axis.pan(deltaX / this.canvas.clientWidth)
+            : this.axis.zoom(NEARER ** (-deltaY / 100), this.at(event).value));
+    }
+
+    /** About the chosen point, or the middle.
+     * @param {number} by */
+    nearer(by) {
+        const [low, high] = this.span, at = this.points[this.chosen]?.[0] ?? NaN;
+        this.seen(this.axis.zoom(by, at >= low && at <= high ? at : (low + high) / 2));
+    }
+
+    /** After the axis: its values are counted once it rests.
+     * @param {boolean} another */
+    seen(another) {
+        if (!another)
+            return false;
+        this.draw();
+        clearTimeout(this.waiting);
+        this.waiting = setTimeout(() => this.ask(), REST);
+        return true;
+    }
+
+    ask() {
+        const {axis: {part}, store, kind} = this;
+        if (!part || kind !== BY_VALUE || !store.histogram)
+            return;
+        this.asked.add(`${part}`);
+        store.engine.ask('histogram', {lo: part[0], hi: part[1]});
+    }
+
+    /** Counts of all values, or of a part.
+     * @param {import('./types').Histogram} counts */
+    take(counts) {
+        const part = `${[counts.lo, counts.hi]}`;
+        if (!this.asked.delete(part)) {
+            this.store.histogram = counts;
+            if (!this.asked.size)
+                this.ask();
+        } else if (part === `${this.axis.part}`) {
+            this.closer = counts;
+        }
+        this.draw();
+    }
+
+    /** A point beyond what is shown comes into its middle. */
+    reveal() {
+        const [low, high] = this.span, [at] = this.points[this.chosen] ?? [low];
+        if (at < low || at > high)
+            this.seen(this.axis.show(at - (high - low) / 2, high - low));
+    }
+
     /** @param {MouseEvent} event */
     doubled(event) {
         const place = this.at(event), index = this.near(place);
@@ -250,12 +329,17 @@ export class Editor {
         else if (key === 'PageDown' || key === 'PageUp')
             this.chosen = Math.max(0, Math.min(this.points.length - 1,
                 this.chosen + (key === 'PageDown' ? 1 : -1)));
+        else if (key === '+' || key === '=' || key === '-')
+            this.nearer(key === '-' ? 1 / NEARER : NEARER);
+        else if (key === '0')
+            this.seen(this.axis.show(-Infinity, Infinity));
         else if (key === 'Insert')
             this.insert();
         else if (key === 'Delete')
             this.remove();
         else
             return false;
+        this.reveal();
         this.draw();
         return true;
     }
@@ -282,12 +366,27 @@ export class Editor {
         this.value.disabled = this.opacity.disabled = !point;
         show(this.value, point ? short(point[0]) : '');
         show(this.opacity, point ? short(point[1]) : '');
+        this.showAxis();
+    }
+
+    /** The values at its ends, what they are of, and where they lie among all. */
+    showAxis() {
+        const {axis: {part}, ends, store: {info}} = this, [low, high] = this.span, [first, last] = this.all;
+        const texts = [short(low), info && this.kind === BY_VALUE ? unitOf(info) : '', short(high)];
+        ends.forEach((end, i) => {
+            end.textContent = texts[i];
+        });
+        this.place.disabled = !part;
+        show(this.place, part ? (low - first) / (last - first - high + low) : 0);
+        this.canvas.dataset.span = `${[low, high]}`;
     }
 
     /** @param {CanvasRenderingContext2D} g
      * @param {string} color */
     drawHistogram(g, color) {
-        const histogram = this.kind.range(this.store);
+        const {part} = this.axis, {closer} = this;
+        const fine = closer && `${part}` === `${[closer.lo, closer.hi]}`;
+        const histogram = fine ? closer : this.kind.range(this.store);
         if (!histogram?.counts.length)
             return;
         /** @param {number} count */
@@ -295,10 +394,13 @@ export class Editor {
         const top = Math.max(1, ...histogram.counts.map(scaled));
         const {bottom} = this, left = this.x(histogram.lo);
         const wide = (this.x(histogram.hi) - left) / histogram.counts.length;
+        const end = this.canvas.clientWidth - EDGE;
         g.fillStyle = color;
         histogram.counts.forEach((count, i) => {
-            const tall = scaled(count) / top * (bottom - EDGE);
-            g.fillRect(left + i * wide, bottom - tall, wide + 0.5, tall);
+            const tall = scaled(count) / top * (bottom - EDGE), at = left + i * wide;
+            const from = part ? Math.max(EDGE, at) : at, to = part ? Math.min(end, at + wide) : at + wide;
+            if (to > from)
+                g.fillRect(from, bottom - tall, to - from + 0.5, tall);
         });
     }
 

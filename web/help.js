@@ -60,6 +60,7 @@ const KEYS = [['Drag', 'turn'], ['Shift or middle drag', 'move'], ['Wheel', 'zoo
     ['x', 'three slices'], ['k', 'handles of clip planes'],
     ['On a slice', 'drag: where they cross; wheel: next slice; right drag: window, level; ' +
         'Ctrl wheel: zoom; double click: alone'],
+    ['On a histogram', 'wheel, + -: zoom its values, 0: all; Page keys: choose a point; arrows: move it'],
     ['Two fingers', 'move and zoom'], ['Arrows', 'as Drag: 5 degrees, Shift: 1'], ['d', 'next kind of drag'],
     ['+ -', 'zoom'], ['r', 'frame all'],
     ['1 - 6', 'front, back, left, right, top, bottom'], ['m', 'next mode'],
@@ -77,8 +78,9 @@ const GUIDE = [
         'turns around that point. "Camera" has the usual views; "Frame all" shows everything again.',
     "Letters at the edges are the patient's sides: Right, Left, Anterior, Posterior, Superior, Inferior."],
     ['Window, level and looks', 'Drag with the right button: to the right for a wider window, up for a higher ' +
-        'level. "Presets" shows other looks on this volume. In "Look" points on the histogram say how opaque ' +
-        'each value is: drag them, double-click to add or remove one. "Mode" has projections, such as mip, ' +
+        'level. "Presets" shows other looks on this volume, those for its kind first, and saves yours to a file. In ' +
+        '"Look" points on the histogram say how opaque each value is: drag them, double-click to add or remove ' +
+        'one; the wheel zooms the values. "Mode" has projections, such as mip, ' +
         'the maximum along each ray.'],
     ['Slices', '"Slices" puts three of them beside the picture. A click in one moves the other two, the wheel ' +
         'goes to the next, a double click shows one large. The value where they cross stands at the lower right.',

@@ -4,7 +4,11 @@ import {zoomed} from './camera.js';
 import {known} from './store.js';
 
 export const VIEWS = ['anterior', 'posterior', 'left', 'right', 'superior', 'inferior'];
-export const MODES = ['over', 'mip', 'minip', 'mean', 'sum', 'iso'];
+/** With what readers of images call them.
+ * @type {Record<string, string>} */
+export const MODE_NAMES = {over: 'translucent (over)', mip: 'maximum (mip)', minip: 'minimum (minip)', mean: 'mean',
+    sum: 'sum', iso: 'surface at a value (iso)'};
+export const MODES = Object.keys(MODE_NAMES);
 
 /** @type {Record<string, [across: number, down: number]>} */
 export const STEPS = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};

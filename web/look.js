@@ -7,6 +7,10 @@
 /** @typedef {import('./types').Channel} Channel */
 /** @typedef {import('./types').Pair} Pair */
 
+/** What values are of: Hounsfield units, SUV, or what the file says.
+ * @param {import('./types').Info} info */
+export const unitOf = ({hounsfield, value_unit = ''}) => hounsfield ? 'HU' : value_unit;
+
 /** @param {Readonly<Look>|null} look */
 export const mixed = look => Boolean(look?.channels?.[0]?.[2]);
 

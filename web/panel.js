@@ -2,13 +2,14 @@
 
 import {facing, grips, isFull, PLANES_MOST, tilted, tiltedTo} from './clip.js';
 import {Channels} from './channels.js';
-import {Colors, ownColors, painted, ranged, text} from './colors.js';
+import {Colors, ownColors, painted, ranged, text, upright} from './colors.js';
 import {button, check, ink, line, make, number, row, section, select, short, show, slider, tip}
     from './controls.js';
 import {BY_GRADIENT, Editor} from './editor.js';
-import {MODES, VIEWS} from './keys.js';
+import {MODE_NAMES, VIEWS} from './keys.js';
 import {mixed, overlayKeys} from './look.js';
 import {axisNames} from './overlay.js';
+import {NO_SHAPE, Presets} from './presets.js';
 import {known} from './store.js';
 
 /** @typedef {import('./types').Keys} Keys */
@@ -21,9 +22,6 @@ import {known} from './store.js';
 
 const WORLD_VIEWS = ['+x', '-x', '+y', '-y', '+z', '-z'];
 const AXES = ['x', 'y', 'z'];
-const FIRST_PANE = 4;
-const NO_SHAPE = {colormap: null, opacity: null, 'gradient-opacity': null, range: null,
-    scale: null};
 
 /** @param {number[]} list
  * @param {number} i
@@ -51,19 +49,17 @@ export class Panel {
         this.actions = actions;
         this.slices = slices;
         this.measure = measure;
-        /** @type {HTMLImageElement[]} */
-        this.images = []; // of presets
         /** @type {HTMLDetailsElement|null} */
         this.clips = null;
         this.whole = [0, 0, 0]; // voxels without a crop
         this.editor = new Editor(store);
         this.gradient = new Editor(store, BY_GRADIENT);
         this.colors = new Colors(store);
+        this.presets = new Presets(store, actions);
         this.channels = new Channels(store, {...NO_SHAPE, preset: null, component: null});
         this.element = make('aside', {className: 'panel', 'aria-label': 'Controls'});
         /** @type {((keys: Readonly<Keys>) => void)[]} */
         this.updates = [];
-        engine.on('small', frame => this.showThumbnail(frame));
     }
 
     get info() {
@@ -75,7 +71,7 @@ export class Panel {
         const {live, dims} = this.info; // a simulation knows its own data
         this.whole = dims;
         this.updates = [];
-        this.element.replaceChildren(this.channels.element, this.presets(), this.look(),
+        this.element.replaceChildren(this.channels.element, this.presets.build(), this.look(),
             this.colors.element,
             section('Opacity by gradient', false, this.gradient.element), this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), this.measure.section(this.actions.measure), this.clipping(), this.shading(),
             this.time(), this.labels());
@@ -90,6 +86,7 @@ export class Panel {
         this.gradient.follow();
         this.channels.update();
         this.colors.update();
+        this.presets.update();
     }
 
     /** Keeps a control as the recipe is.
@@ -121,28 +118,29 @@ export class Panel {
 
     look() {
         const {store, info} = this;
-        const modes = this.kept(select(MODES, mode => store.set(mode === 'iso'
+        const modes = this.kept(select(Object.entries(MODE_NAMES), mode => store.set(mode === 'iso'
             ? {mode, iso: store.keys.iso ?? +short(middle(known(store.look)))}
             : {mode, iso: null})), ({mode = 'over'}) => mode);
-        const isoRow = row('Iso value', this.kept(number('iso value', value => store.set({iso: value})),
+        const isoRow = row('Surface at', this.kept(number('surface at this value', value => store.set({iso: value})),
             ({iso = ''}) => iso));
         const maps = this.kept(select([['', 'of the preset'], ...info.colormaps, [':', 'own']],
-            name => store.set({colormap: name === ':' ? text(this.colors.points) : name || null,
+            name => store.set({colormap: name === ':' ? text(this.colors.points)
+                : name ? name + (this.colors.inverted ? '_r' : '') : null,
                 ...name && store.look?.labels?.length ? {preset: null} : {}})), // these are of values
-        ({colormap = ''}) => ownColors(colormap) ? ':' : colormap);
+        ({colormap = ''}) => ownColors(colormap) ? ':' : upright(colormap));
         const ends = /** @type {const} */ (['low', 'high']).map(end => this.kept(number(`${end}est value of the range`,
             value => this.setRange({[end]: value})), () => store.look ? short(store.look[end]) : ''));
         const percent = button('1-99 %', 'Range of the 1st to the 99th percentile',
             () => store.set({range: ['p1', 'p99']}));
         const alone = make('div', {}, this.editor.element, row('Range', ...ends, percent),
-            row('Colours', maps));
+            row('Colours', maps), this.colors.invert.label);
         this.follow(keys => {
             alone.hidden = mixed(store.look);
             isoRow.hidden = keys.mode !== 'iso';
         });
         return section('Look', true, alone, row('Mode', tip(modes, 'How values along a ray become a pixel (m: the next)')), isoRow,
             this.box('logarithmic values', ({scale}) => scale === 'log', on => store.set({scale: on ? 'log' : null})),
-            this.box('on both sides of 0', ({scale}) => scale?.startsWith('sym'),
+            this.box('logarithmic on both sides of 0', ({scale}) => scale?.startsWith('sym'),
                 on => store.set({scale: on ? 'symlog' : null})));
     }
 
@@ -151,41 +149,6 @@ export class Panel {
         const look = known(this.store.look), {low, high} = {...look, ...end};
         if (low < high)
             this.store.set(ranged(look, this.store.keys, [low, high]));
-    }
-
-    /** Pictures of the volume itself, made when the list is opened. */
-    presets() {
-        const {store, info} = this, none = info.tf ? 'of the file' : 'automatic';
-        const names = [['', info.tf ? 'of the file of --tf' : 'made from the histogram'],
-            ...info.presets];
-        const grid = make('div', {className: 'presets'});
-        this.images = names.map(([name, text]) => {
-            const image = make('img', {alt: '', hidden: true});
-            const choose = make('button', {type: 'button', title: text,
-                'aria-label': `Preset ${name || none}: ${text}`,
-                onclick: () => {
-                    const [[first]] = mixed(store.look) && store.look?.channels || [[null]];
-                    store.set({...NO_SHAPE, preset: name || null, ...first !== null && {channel: `${first}`}});
-                }},
-            image, name || none);
-            this.follow(keys => choose.setAttribute('aria-pressed', `${(keys.preset ?? '') === name}`));
-            grid.append(choose);
-            return image;
-        });
-        const list = section('Presets', false, grid);
-        list.addEventListener('toggle', () => list.open && names.forEach(([preset], i) =>
-            this.engine.ask('thumbnail', {preset, pane: FIRST_PANE + i})));
-        return list;
-    }
-
-    /** @param {import('./types').Frame} frame */
-    showThumbnail(frame) {
-        const image = this.images[frame.pane - FIRST_PANE];
-        if (!image)
-            return;
-        URL.revokeObjectURL(image.src);
-        image.src = URL.createObjectURL(frame.blob);
-        image.hidden = false;
     }
 
     /** A slider of a number, or of one of the material.
@@ -231,17 +194,18 @@ export class Panel {
             this.strength('Ambient', 'material', 1, 0.01, 0),
             this.strength('Diffuse', 'material', 1, 0.01, 1),
             this.strength('Specular', 'material', 1, 0.01, 2),
-            this.strength('Depth dark', 'depth-darkening', 1, 0.05),
+            tip(this.strength('Depth dark', 'depth-darkening', 1, 0.05), 'What lies behind something is darker at its edge'),
             this.strength('Occlusion', 'occlusion', 1, 0.05),
-            this.strength('Threshold', 'threshold', 255, 1), sparse);
+            tip(this.strength('Threshold', 'threshold', 255, 1), 'Voxels of at most this opacity, of 255, are left out'), sparse);
     }
 
     camera() {
         const {store, actions, info} = this;
         const names = info.medical ? VIEWS : WORLD_VIEWS;
         const views = make('div', {className: 'row'}, ...[...names, 'iso'].map((name, i) =>
-            button(info.medical ? name[0].toUpperCase() + name.slice(1) : name,
-                `View from ${name}` + (info.medical && i < VIEWS.length ? ` (${i + 1})` : ''), () => actions.view(name))));
+            name === 'iso' ? button('Oblique', 'Oblique view, from a corner', () => actions.view(name))
+                : button(info.medical ? name[0].toUpperCase() + name.slice(1) : name,
+                    `View from ${name}` + (info.medical && i < VIEWS.length ? ` (${i + 1})` : ''), () => actions.view(name))));
         const angles = /** @type {const} */ (['azimuth', 'elevation', 'roll']).map(key => this.kept(
             number(`${key} in degrees`, value => store.set({[key]: value})),
             keys => short(keys[key] ?? 0)));

@@ -53,7 +53,7 @@ export type Info = {
     presets: [name: string, text: string][], colormaps: string[], tf: boolean, fov: number,
     channels?: string[], keys?: string[], mask?: boolean, overlay?: string | null, labels?: string | null,
     slices?: SliceInfo[] | null, live?: boolean, instance?: string, file?: string, window: Pair,
-    hounsfield?: boolean, value_unit?: string, opened?: number};
+    hounsfield?: boolean, value_unit?: string, opened?: number, modality?: string};
 
 export type Label = [value: number, name: string, color: string, opacity: number];
 /** One that is drawn alone has no map. */
@@ -62,7 +62,7 @@ export type Channel = [index: number, name: string, map: string, color: string,
 
 /** What the transfer function is, in numbers and colours. */
 export type Look = {
-    low: number, high: number, count: number, legend?: number, opacity: Point[], gradient: Point[],
+    map?: string, preset?: string, low: number, high: number, count: number, legend?: number, opacity: Point[], gradient: Point[],
     strip: string[], text: string, shaded: boolean, labels?: Label[],
     overlay?: {low: number, high: number, labels: Label[]} | null, channels?: Channel[]};
 
@@ -95,7 +95,7 @@ export type Frame = {
 export type Heard = {
     open: undefined, closed: string, measured: number, picture: Frame, small: Frame,
     info: Info, look: Look, state: State, histogram: Histogram, said: {text: string},
-    command: {text: string}, recipe: {text: string}, progress: {stage: string, part: number},
+    command: {text: string}, recipe: {text: string}, 'look-file': {text: string}, progress: {stage: string, part: number},
     figures: {sparse: number | null, method: string}, step: {step: number}, slice: {pane: number},
     value: {at: number[], value: number | null}, depth: {x: number, y: number, depth: number | null},
     replaced: {gone: boolean, again: boolean}, measures: {of: string, measures: Result[]}, probe: Probe,
@@ -118,7 +118,7 @@ export interface Engine {
 export type Actions = {
     view(name: string): void, measure(tool: string | null): void, length(): void, angle(): void, ellipse(): void,
     fit(): void, mode(): void, perspective(): void, letters(): void, play(): void,
-    drag(): void, slices(): void, handles(): void, command(): void, movie(): void, link(): void, file(): void,
+    drag(): void, slices(): void, handles(): void, command(): void, movie(): void, link(): void, file(): void, saveLook(): void, choose(): void,
     save(): void, reset(): void, undo(): void, redo(): void, help(): void,
     open(): void, next(): void, previous(): void};
 

@@ -6,11 +6,12 @@ import {ServerEngine} from './engine_server.js';
 import {aimed, unproject} from './camera.js';
 import {Folder} from './folder.js';
 import {Hints, help} from './help.js';
-import {MODES, listenToKeys} from './keys.js';
+import {MODES, MODE_NAMES, listenToKeys} from './keys.js';
 import {MEASURES, Measure} from './measure.js';
 import {Overlay} from './overlay.js';
 import {Panel} from './panel.js';
 import {Pointer, TOOLS} from './pointer.js';
+import {isLook} from './presets.js';
 import {Slices} from './slices.js';
 import {Store, known} from './store.js';
 import {leftOut, sifted} from './valid.js';
@@ -140,7 +141,7 @@ const actions = {
         const {low, high} = known(store.look);
         store.set(next === 'iso' ? {mode: next, iso: store.keys.iso ?? (low + high) / 2}
             : {mode: next, iso: null});
-        say(`Mode ${next}`);
+        say(`Mode: ${MODE_NAMES[next]}`);
     },
     perspective() {
         const on = (store.keys.perspective ?? 0) > 0;
@@ -186,6 +187,8 @@ const actions = {
         copy('Link to this state', url.href);
     },
     file: () => engine.ask('recipe'),
+    saveLook: () => engine.ask('look-file'),
+    choose: chooseFile,
     save() {
         if (store.rest)
             save(`${baseName()}.png`, store.rest);
@@ -285,7 +288,10 @@ async function take({0: file}) {
         const {good, wrong} = sifted(taken, info);
         if (!Object.keys(good).length)
             throw 0;
-        store.replace({slices: store.keys.slices, ...good});
+        if (isLook(keys))
+            panel.presets.take(good);
+        else
+            store.replace({slices: store.keys.slices, ...good});
         say(`${leftOut(wrong)} ${name === info.name ? '' : `The recipe is of ${name}, and taken.`}`.trim());
     } catch {
         say(`${file.name} is no recipe, as Recipe and --save-config write them.`);
@@ -379,6 +385,8 @@ engine.on('progress', ({stage, part}) => {
 engine.on('command', message => copy('The command that makes this picture', message.text));
 engine.on('recipe', message => save(`${baseName()}.json`,
     new Blob([`${message.text}\n`], {type: 'application/json'})));
+engine.on('look-file', message => save(`${baseName()}-look.json`,
+    new Blob([`${message.text}\n`], {type: 'application/json'})));
 engine.on('depth', ({x, y, depth}) => {
     if (depth === null || !Number.isFinite(depth)) {
         say('Nothing opaque is there to turn around; modes over and iso have depths.');
@@ -394,10 +402,7 @@ engine.on('depth', ({x, y, depth}) => {
 engine.on('step', ({step}) => {
     store.step = step;
 });
-engine.on('histogram', message => {
-    store.histogram = message;
-    panel.editor.draw();
-});
+engine.on('histogram', message => panel.editor.take(message));
 engine.on('look', message => {
     store.answered = message;
     panel.update();
@@ -517,5 +522,5 @@ document.addEventListener('drop', event => {
     shared.take(event.dataTransfer?.files ?? []);
 });
 // For the console, for tests, and for a page that opens volumes.
-const shared = {engine, store, recipe: store, page: store, slices, measure, overlay, take, file};
+const shared = {engine, store, recipe: store, page: store, editor: panel.editor, slices, measure, overlay, take, file};
 Object.assign(window, {snowglass: shared});

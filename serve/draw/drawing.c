@@ -281,7 +281,7 @@ static int apply(drawing *d, const json_t *recipe) {
     if (other_data || rearranged)
         slices_forget(d);
     if (other_data || rearranged || !d->state.volume)
-        d->values = (kept_values){.done = 0};
+        d->values = (kept_values){.uses = 0};
     if (d->state.plan.streams && (other_data || other_look || overlaid))
         drop_frame(d);
     anew |= other_look && d->state.channels.list.count && process_ranks() > 1;

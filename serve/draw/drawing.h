@@ -22,14 +22,22 @@ typedef struct kept_channel {
     int64_t index;
 } kept_channel;
 
-/* The values of the volume, which are counted once (values.h). */
+/* The values of the volume, which are counted once, and once more in each part
+ * of their range that a page looks at (values.h); pages take turns. */
 #define VALUES_BINS 256
+#define VALUES_PARTS 32
+typedef struct kept_counts {
+    double low, high;
+    int64_t done;  /* voxels that are counted from low to high; 0: none */
+    uint64_t used; /* which of the uses was the last one */
+    uint64_t counts[VALUES_BINS];
+} kept_counts;
+
 typedef struct kept_values {
     bool measured;  /* the ends are known */
     double ends[2]; /* of all of them */
-    double low, high;
-    int64_t done; /* voxels that are counted from low to high; 0: none */
-    uint64_t counts[VALUES_BINS];
+    kept_counts kept[1 + VALUES_PARTS]; /* all values; parts of the range */
+    uint64_t uses;
 } kept_values;
 
 typedef struct shown_channels {

@@ -69,6 +69,7 @@ static double number(const json_t *arguments, size_t i) {
 static void make_call(drawing *d, ranks_call call, const json_t *given) {
     snow_image *image = NULL;
     snow_overlay *overlay = NULL;
+    thumbnail of;
     double ends[2], depth;
     uint64_t counts[VALUES_BINS];
     switch (call) {
@@ -84,8 +85,11 @@ static void make_call(drawing *d, ranks_call call, const json_t *given) {
                              &overlay);
         break;
     case RANKS_THUMBNAIL:
-        (void)small_thumbnail(d, json_string_value(json_array_get(given, 0)),
-                              (int)number(given, 1), NULL, NULL, &image);
+        of = (thumbnail){json_string_value(json_array_get(given, 0)),
+                         json_string_value(json_array_get(given, 1)),
+                         json_is_true(json_array_get(given, 2))};
+        (void)small_thumbnail(d, &of, (int)number(given, 3), NULL, NULL,
+                              &image);
         break;
     case RANKS_DEPTH:
         ends[0] = number(given, 2);

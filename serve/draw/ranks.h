@@ -14,7 +14,7 @@ typedef enum ranks_call {
     RANKS_APPLY,     /* a recipe */
     RANKS_FIT,       /* nothing */
     RANKS_RENDER,    /* [quality, shrink] */
-    RANKS_THUMBNAIL, /* [preset, side] */
+    RANKS_THUMBNAIL, /* [preset, colormap, mip, side] */
     RANKS_DEPTH,     /* [x, y, width, height] */
     RANKS_ENDS,      /* nothing */
     RANKS_WINDOW,    /* nothing */

@@ -5,6 +5,8 @@
 
 #include <snowglass/ranks.h>
 
+#include <string.h>
+
 static snow_status render_part(drawing *d, snow_frame *frame,
                                const snow_transfer *transfer,
                                const snow_view *view,
@@ -33,19 +35,31 @@ snow_status small_render(drawing *d, const snow_transfer *transfer,
                                     settings, image);
 }
 
-int small_thumbnail(drawing *d, const char *preset, int side,
+/* Projections of PET go over what is read of it, as those of the command. */
+static void take_projection(const drawing *d, snow_look *look) {
+    const bool pet = strcmp(d->state.whole.modality, "PT") == 0;
+    look->preset = "linear";
+    look->range = pet ? SNOW_RANGE_SIGNAL : SNOW_RANGE_ROBUST;
+}
+
+int small_thumbnail(drawing *d, const thumbnail *of, int side,
                     snow_stop_fn *stop, void *user, snow_image **image) {
     render_state *s = &d->state;
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
-    snow_look look = {.size = sizeof look, .preset = *preset ? preset : NULL};
-    ranks_tell(d, RANKS_THUMBNAIL, json_pack("[s,i]", preset, side));
-    if (!*preset && d->first.loaded) /* what no preset means then */
+    snow_look look = {.size = sizeof look,
+                      .preset = *of->preset ? of->preset : NULL,
+                      .colormap = of->colormap};
+    ranks_tell(d, RANKS_THUMBNAIL,
+               json_pack("[s,s?,b,i]", of->preset, of->colormap, of->mip, side));
+    if (of->mip)
+        take_projection(d, &look);
+    else if (!*of->preset && d->first.loaded) /* what no preset means then */
         look.base = snow_look_file_look(d->first.loaded);
     snow_view view = s->view;
     snow_settings settings = s->settings;
     settings.quality = SNOW_QUALITY_DRAFT;
-    settings.mode = SNOW_MODE_OVER; /* what a preset is for */
+    settings.mode = of->mip ? SNOW_MODE_MIP : SNOW_MODE_OVER;
     settings.stop = stop;
     settings.stop_user = user;
     view.width = view.height = side;

@@ -12,9 +12,15 @@ snow_status small_render(drawing *d, const snow_transfer *transfer,
                          const snow_view *view, const snow_settings *settings,
                          snow_frame **frame, snow_image **image);
 
-/* A picture with a preset in place of the look, or with no preset,
- * unless `stop` says so: EXIT_INTERRUPTED. */
-int small_thumbnail(drawing *d, const char *preset, int side,
+/* What is shown in place of the look. */
+typedef struct thumbnail {
+    const char *preset;   /* "": none */
+    const char *colormap; /* in place of its colours; NULL: these */
+    bool mip;             /* as a maximum projection */
+} thumbnail;
+
+/* A picture, unless `stop` says so: EXIT_INTERRUPTED. */
+int small_thumbnail(drawing *d, const thumbnail *of, int side,
                     snow_stop_fn *stop, void *user, snow_image **image);
 
 #endif

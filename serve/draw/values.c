@@ -145,8 +145,32 @@ static snow_status count_rows(drawing *d, bins *b, int64_t *done) {
     return status;
 }
 
-static int count_piece(drawing *d, double low, double high) {
+static bool is_range(const double ends[2], double low, double high) {
+    return !(ends[0] < low) && !(low < ends[0]) && !(ends[1] < high) &&
+           !(high < ends[1]);
+}
+
+/* What is kept of these values; else in the place of what was longest not
+ * asked for. */
+static kept_counts *counts_of(drawing *d, double low, double high) {
     kept_values *k = &d->values;
+    kept_counts *oldest = &k->kept[1], *found = NULL;
+    if (k->measured && is_range(k->ends, low, high))
+        found = &k->kept[0];
+    for (int i = 1; i <= VALUES_PARTS && !found; i++) {
+        kept_counts *each = &k->kept[i];
+        if (is_range((double[2]){each->low, each->high}, low, high))
+            found = each;
+        if (each->used < oldest->used)
+            oldest = each;
+    }
+    if (!found)
+        found = oldest;
+    found->used = ++k->uses;
+    return found;
+}
+
+static int count_piece(drawing *d, kept_counts *k, double low, double high) {
     const snow_volume_info *info = snow_volume_get_info(d->state.volume);
     const int64_t all = info->dims[0] * info->dims[1] * info->dims[2];
     const double begin = seconds_now();
@@ -173,8 +197,9 @@ int values_count(drawing *d, double low, double high,
     bins all = {.low = low, .high = high};
     bool in_file;
     if (process_ranks() == 1 && snow_volume_voxels(d->state.volume)) {
-        int piece = count_piece(d, low, high);
-        memcpy(counts, d->values.counts, sizeof d->values.counts);
+        kept_counts *k = counts_of(d, low, high);
+        int piece = count_piece(d, k, low, high);
+        memcpy(counts, k->counts, sizeof k->counts);
         return piece;
     }
     ranks_tell(d, RANKS_HISTOGRAM, json_pack("[f,f]", low, high));

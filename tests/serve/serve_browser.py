@@ -210,6 +210,7 @@ else:
     plan("mask", head("head.nrrd", 64, 64, 64)[0], "--mask",
          os.path.join(shots, "head.nrrd"), "--labels", "60-255")
     plan("recipes", *HEAD)
+    plan("transfer", *HEAD)
     measured()
     chosen()
     overlaid()

@@ -13,6 +13,7 @@ import {readFileSync, writeFileSync} from 'node:fs';
 import {asked, restarted, steps} from './everyday.mjs';
 import {listed} from './folder.mjs';
 import {measures} from './measures.mjs';
+import {automatic, transfer} from './transfer.mjs';
 
 const [playwright, chromium, folder, ...parts] = process.argv.slice(2);
 const {chromium: browsers} = await import(playwright);
@@ -385,6 +386,10 @@ async function editor(page) {
     check('and all is automatic again', !(await keys(page)).opacity);
 }
 
+/** Until all presets of the groups that are open have pictures. */
+const thumbnails = page => page.waitForFunction(() => [...document.querySelectorAll('details[open] > div > .presets img')]
+    .every(image => !image.hidden));
+
 async function controls(page) {
     await drag(page, 60, 0, 'right');
     let now = await keys(page);
@@ -411,9 +416,9 @@ async function controls(page) {
         JSON.stringify(clip));
     await page.getByRole('button', {name: 'Remove all clip planes'}).click();
     await page.locator('summary', {hasText: 'Presets'}).click();
-    await page.waitForFunction(() => [...document.querySelectorAll('.presets img')]
-        .every(image => !image.hidden));
-    await settle(page, page.locator('.presets button', {hasText: 'ct-bone'}).first().click());
+    await page.locator('details details summary', {hasText: 'CT'}).click();
+    await thumbnails(page);
+    await settle(page, page.locator('.presets button', {hasText: 'Bone'}).first().click());
     check('a preset is chosen', (await keys(page)).preset === 'ct-bone');
     await shot(page, 'presets');
     for (const key of ['1', '3', '6', 'ArrowLeft', 'ArrowUp', '+', '-', 'p', 'l', 'm', 'm']) {
@@ -908,10 +913,9 @@ async function film() {
     await seen('1_opened');
     const presets = page.locator('summary', {hasText: 'Presets'});
     await hand.press(presets);
-    await page.waitForFunction(() => [...document.querySelectorAll('.presets img')]
-        .every(image => !image.hidden));
+    await thumbnails(page);
     await step('2_presets');
-    await hand.press(page.locator('.presets button', {hasText: 'ct-bone'}).first());
+    await hand.press(page.locator('.presets button', {hasText: 'Bone'}).first());
     check('bone is seen', (await keys(page)).preset === 'ct-bone');
     await hand.press(presets);
     await seen('3_bone');
@@ -1228,7 +1232,7 @@ async function fused() {
     await enter(page.getByLabel('highest value of the range of the overlay'), '150');
     await settle(page, page.getByRole('slider', {name: 'opacity of the overlay'}).fill('0.8'));
     await page.locator('details', {has: page.locator('summary', {hasText: 'Overlay'})})
-        .getByLabel('Colours').selectOption('viridis');
+        .getByLabel('Colours', {exact: true}).selectOption('viridis');
     await page.locator('summary', {hasText: 'Colours'}).click();
     await page.getByLabel('colour 2', {exact: true}).fill('#ff2040');
     await enter(page.getByLabel('value of colour 2'), '77');
@@ -1248,7 +1252,7 @@ async function fused() {
     await shot(page, 'fused');
     await set(page, {colormap: null, range: [100000, 100001]});
     await page.locator('details', {has: page.locator('summary', {hasText: 'Look'})})
-        .getByLabel('Colours').selectOption(':');
+        .getByLabel('Colours', {exact: true}).selectOption(':');
     await rest(page);
     const near = (await keys(page)).colormap.split(',').map(part => part.split(':')[0]).join();
     check('colours of a narrow range are apart', near === '100000,100000.25,100000.5,100000.75,100001',
@@ -1269,6 +1273,7 @@ async function mixed() {
     check('all channels are drawn', await rowOf('DAPI').isChecked() && await rowOf('GFP').isChecked() &&
         await rowOf('Cy5').isChecked() && !await list(), await list());
     check('no transfer function is in their place', !await page.locator('.editor').first().isVisible());
+    await automatic(tools, page);
     await page.keyboard.press('x');
     await slicesRest(page);
     await page.getByLabel('in the colours of the look').evaluate(box => box.click());
@@ -1299,7 +1304,8 @@ async function mixed() {
     check('the command has the list', command.includes(`--channel ${before.replace(/:1(?=,|$)/g, '')}`),
         `${command} ${before}`);
     await page.locator('summary', {hasText: 'Presets'}).click();
-    await settle(page, page.getByRole('button', {name: /^Preset linear/}).click());
+    await page.locator('details details summary', {hasText: 'General'}).click();
+    await settle(page, page.getByRole('button', {name: /^Grey ramp/}).click());
     check('a preset shows one', await list() === '0' && !await rowOf('GFP').isChecked() &&
         await page.locator('.editor').first().isVisible(), await list());
     await settle(page, rowOf('Cy5').check());
@@ -1411,9 +1417,9 @@ async function more() {
     await page.context().close();
 }
 
-const tools = {answered, check, folder, judged, keys, open, shot, part, rest, slicesRest, wheel};
+const tools = {accessible: page => judged(page, 'with the axis near'), answered, check, folder, judged, keys, open, shot, part, rest, slicesRest, wheel};
 const known = {short: first, long: all, more, film, steps: () => steps(tools),
-    restarted: () => restarted(tools), asked: () => asked(tools), measures: () => measures(tools), folder: () => listed(tools), embed: embedded, points: manyPoints, mask: masked,
+    restarted: () => restarted(tools), asked: () => asked(tools), measures: () => measures(tools), transfer: () => transfer(tools), folder: () => listed(tools), embed: embedded, points: manyPoints, mask: masked,
     overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, plain: plainChannels, begun, many};
 
 async function run() {
