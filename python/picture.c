@@ -71,7 +71,8 @@ typedef struct request {
     snow_settings settings;
     const double *azimuths; /* all that are to fit */
     size_t azimuth_count;
-    bool fit;
+    bool fit, empty;         /* nothing is seen */
+    double shown; /* voxels that the looks show; below 0: as of the frame */
     snow_image *image, *depth;
 } request;
 
@@ -130,6 +131,47 @@ static snow_status draw_apart(request *r, bool added, int64_t index) {
     return lay_over(r, index);
 }
 
+/* Whether nothing is seen, as the command line finds it. */
+static bool is_empty(snow_image *image) {
+    const size_t channels = (size_t)snow_image_channels(image);
+    const size_t count = (size_t)snow_image_width(image) *
+                         (size_t)snow_image_height(image) * channels;
+    const float *pixels = snow_image_pixels(image);
+    for (size_t n = channels - 1; n < count; n += channels)
+        if (channels == 1 ? !isnan(pixels[n]) : pixels[n] != 0)
+            return false;
+    return true;
+}
+
+/* Adds the voxels of a volume that a look shows; those of a file are left out,
+ * as they would all be read. */
+static snow_status add_shown(request *r, const snow_volume *volume,
+                             const snow_transfer *transfer) {
+    const int64_t *dims = snow_volume_get_info(volume)->dims;
+    double hidden = 1;
+    if (!snow_volume_voxels(volume))
+        return SNOW_STATUS_OK;
+    const snow_status status = snow_transfer_sparse_ratio(
+        transfer, volume, r->settings.threshold, &hidden);
+    r->shown += (1 - hidden) * (double)dims[0] * (double)dims[1] *
+                (double)dims[2];
+    return status;
+}
+
+/* Why a picture is empty. The frame's count is of the look that its voxels were
+ * encoded for, which may have shown more than this one. */
+static snow_status count_shown(request *r) {
+    const volume_object *o = r->volume;
+    if (!r->empty || r->settings.mode != SNOW_MODE_OVER ||
+        !snow_volume_voxels(o->volume))
+        return SNOW_STATUS_OK;
+    r->shown = 0;
+    snow_status status = add_shown(r, o->volume, r->transfer->transfer);
+    for (int n = 0; n < r->count && !status; n++)
+        status = add_shown(r, r->layers[n].volume, r->layers[n].transfer);
+    return status;
+}
+
 static snow_status draw(request *r) {
     volume_object *o = r->volume;
     const bool added = r->mixed && r->settings.mode != SNOW_MODE_OVER;
@@ -146,33 +188,31 @@ static snow_status draw(request *r) {
             &r->settings, r->azimuths, r->azimuth_count, &r->view);
     if (!status)
         status = draw_apart(r, added, -1);
+    r->empty = !status && is_empty(r->image);
+    if (!status)
+        status = count_shown(r);
     if (!status && r->settings.depth)
         status = copy_depth(o, &r->depth);
     return status;
 }
 
-/* Whether nothing is seen, as the command line finds it. */
-static bool is_empty(snow_image *image) {
-    const size_t channels = (size_t)snow_image_channels(image);
-    const size_t count = (size_t)snow_image_width(image) *
-                         (size_t)snow_image_height(image) * channels;
-    const float *pixels = snow_image_pixels(image);
-    for (size_t n = channels - 1; n < count; n += channels)
-        if (channels == 1 ? !isnan(pixels[n]) : pixels[n] != 0)
-            return false;
-    return true;
-}
-
 /* What the last picture took. */
-static PyObject *stats_of(const volume_object *o, snow_image *image) {
-    const snow_stats *s = snow_frame_stats(o->frame);
+static PyObject *stats_of(const request *r) {
+    const snow_stats *s = snow_frame_stats(r->volume->frame);
+    const bool counted = r->shown >= 0;
+    const long long interesting =
+        counted ? llround(r->shown) : (long long)s->interesting;
+    const double sparse =
+        counted && s->voxels > 0
+            ? 1 - (double)interesting / (double)s->voxels
+            : s->sparse_ratio;
     return Py_BuildValue(
-        "{sOsssssssssisLsLsdsd}", "empty", is_empty(image) ? Py_True : Py_False,
+        "{sOsssssssssisLsLsdsd}", "empty", r->empty ? Py_True : Py_False,
         "method", snow_method_name(s->method), "encoding",
         snow_encoding_name(s->encoding), "kernel", snow_kernel_name(s->kernel),
         "isa", snow_isa_name(s->isa), "threads", s->threads, "voxels",
-        (long long)s->voxels, "interesting", (long long)s->interesting,
-        "sparse_ratio", s->sparse_ratio, "seconds", s->seconds_frame);
+        (long long)s->voxels, "interesting", interesting, "sparse_ratio",
+        sparse, "seconds", s->seconds_frame);
 }
 
 /* Directions of the camera that are all to fit, or NULL with none of them;
@@ -263,7 +303,7 @@ PyObject *volume_render(PyObject *self, PyObject *args) {
     PyObject *stats = NULL, *marks;
     const char *name;
     double *turns;
-    request r = {.volume = o};
+    request r = {.volume = o, .shown = -1};
     snow_volume_info info;
     snow_status status = SNOW_STATUS_OK;
     int fit, mixed;
@@ -293,7 +333,7 @@ PyObject *volume_render(PyObject *self, PyObject *args) {
         CALL(o->context, status, draw(&r));
     PyMem_Free(turns);
     if (viewed && status == SNOW_STATUS_OK)
-        stats = stats_of(o, r.image);
+        stats = stats_of(&r);
     context_leave(o->context, status);
     PyObject *image = finish_image(type, &r, &info);
     PyObject *out = answer(type, &r, image, stats);

@@ -153,6 +153,8 @@ static void answer_thumbnail(drawing *d, viewer_state *s, outbox *box,
     if (done != CONTINUE)
         return;
     snow_image_options form = picture_form(&d->opts, NULL);
+    if (d->opts.background.automatic)
+        memcpy(form.background, of.ground, sizeof of.ground);
     outgoing *made = pack_small(image, &form, false, (int)pane, 0);
     if (made)
         made->client = client;

@@ -5,6 +5,7 @@ import {Axis, EDGE} from './axis.js';
 import {button, listen, make, number, row, short, show, slider, surface} from './controls.js';
 import {STEPS} from './keys.js';
 import {unitOf} from './look.js';
+import {known} from './store.js';
 
 /** @typedef {import('./store.js').Store} Store */
 /** @typedef {import('./types').Point} Point */
@@ -16,6 +17,7 @@ import {unitOf} from './look.js';
 
 const NEAR = 12; // pixels
 const NEARER = 1.5; // by a step of the axis
+const BINS = 256; // of the answer: serve/draw/drawing.h
 const REST = 200; // ms after which values are counted anew
 
 /** @type {Kind} */
@@ -46,8 +48,10 @@ export class Editor {
         /** The counts of the part that is shown, and of which parts they were asked for.
          * @type {import('./types').Histogram|null} */
         this.closer = null;
-        /** @type {Set<string>} */
-        this.asked = new Set();
+        this.closerPart = '';
+        /** By the range that was asked for.
+         * @type {Map<string, string>} */
+        this.asked = new Map();
         this.waiting = 0;
         this.canvas = make('canvas', {className: 'editor', tabIndex: 0,
             role: 'img', 'aria-label': `Opacity by ${kind.name}, over the histogram. ` +
@@ -283,20 +287,33 @@ export class Editor {
         const {axis: {part}, store, kind} = this;
         if (!part || kind !== BY_VALUE || !store.histogram)
             return;
-        this.asked.add(`${part}`);
-        store.engine.ask('histogram', {lo: part[0], hi: part[1]});
+        const [lo, hi] = this.counted(part);
+        this.asked.set(`${[lo, hi]}`, `${part}`);
+        store.engine.ask('histogram', {lo, hi});
+    }
+
+    /** A part in bins: those of whole numbers are as wide as some of these, or bins of one and
+     * of two would stand side by side.
+     * @param {import('./types').Pair} part
+     * @returns {import('./types').Pair} */
+    counted([low, high]) {
+        const {type, min, max} = known(this.store.info);
+        if (!/int/.test(type) || !Number.isInteger(min) || !Number.isInteger(max))
+            return [low, high];
+        const from = Math.floor(low) - 0.5;
+        return [from, from + BINS * Math.ceil((high + 1 - from) / BINS)];
     }
 
     /** Counts of all values, or of a part.
      * @param {import('./types').Histogram} counts */
     take(counts) {
-        const part = `${[counts.lo, counts.hi]}`;
-        if (!this.asked.delete(part)) {
+        const range = `${[counts.lo, counts.hi]}`, part = this.asked.get(range);
+        if (!this.asked.delete(range)) {
             this.store.histogram = counts;
             if (!this.asked.size)
                 this.ask();
-        } else if (part === `${this.axis.part}`) {
-            this.closer = counts;
+        } else if (part) {
+            [this.closer, this.closerPart] = [counts, part];
         }
         this.draw();
     }
@@ -385,8 +402,7 @@ export class Editor {
      * @param {string} color */
     drawHistogram(g, color) {
         const {part} = this.axis, {closer} = this;
-        const fine = closer && `${part}` === `${[closer.lo, closer.hi]}`;
-        const histogram = fine ? closer : this.kind.range(this.store);
+        const histogram = closer && `${part}` === this.closerPart ? closer : this.kind.range(this.store);
         if (!histogram?.counts.length)
             return;
         /** @param {number} count */

@@ -87,7 +87,8 @@ static void make_call(drawing *d, ranks_call call, const json_t *given) {
     case RANKS_THUMBNAIL:
         of = (thumbnail){json_string_value(json_array_get(given, 0)),
                          json_string_value(json_array_get(given, 1)),
-                         json_is_true(json_array_get(given, 2))};
+                         json_is_true(json_array_get(given, 2)),
+                         {0}};
         (void)small_thumbnail(d, &of, (int)number(given, 3), NULL, NULL,
                               &image);
         break;

@@ -42,7 +42,7 @@ static void take_projection(const drawing *d, snow_look *look) {
     look->range = pet ? SNOW_RANGE_SIGNAL : SNOW_RANGE_ROBUST;
 }
 
-int small_thumbnail(drawing *d, const thumbnail *of, int side,
+int small_thumbnail(drawing *d, thumbnail *of, int side,
                     snow_stop_fn *stop, void *user, snow_image **image) {
     render_state *s = &d->state;
     snow_transfer *transfer = NULL;
@@ -67,8 +67,10 @@ int small_thumbnail(drawing *d, const thumbnail *of, int side,
     if (status == SNOW_STATUS_OK && !options_given(&d->opts, "shade"))
         settings.shade = snow_transfer_is_unshaded(transfer) ? SNOW_SHADE_NONE
                                                              : SNOW_SHADE_PHONG;
-    if (status == SNOW_STATUS_OK)
+    if (status == SNOW_STATUS_OK) {
+        snow_mode_background(settings.mode, transfer, of->ground);
         status = small_render(d, transfer, &view, &settings, &frame, image);
+    }
     snow_frame_free(frame);
     snow_transfer_free(transfer);
     return check_status(s->context, status);

@@ -17,10 +17,11 @@ typedef struct thumbnail {
     const char *preset;   /* "": none */
     const char *colormap; /* in place of its colours; NULL: these */
     bool mip;             /* as a maximum projection */
+    double ground[3];     /* is set: what suits the colours behind it */
 } thumbnail;
 
 /* A picture, unless `stop` says so: EXIT_INTERRUPTED. */
-int small_thumbnail(drawing *d, const thumbnail *of, int side,
+int small_thumbnail(drawing *d, thumbnail *of, int side,
                     snow_stop_fn *stop, void *user, snow_image **image);
 
 #endif
