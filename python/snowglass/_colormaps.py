@@ -20,7 +20,7 @@ def is_own(name: str) -> bool:
     known = {plain(each) for each in _snowglass.names("colormaps")}
     same = plain(name)
     return ":#" in name or same in known or \
-        same[-1:] == "r" and same[:-1] in known or same in ("gray", "grayr")
+        same[-1:] == "r" and same[:-1] in known or same in ("gray", "grayr", "reversed")
 
 
 def other(given: Any) -> Any:

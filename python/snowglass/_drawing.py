@@ -194,14 +194,17 @@ class Drawing:
         return image
 
     def thumbnail(self, recipe: Keys, preset: str, side: int,
-                  progress: Callable[[str, float], Any]) -> Image:
-        """With a preset in place of the look, or with none; by a volume of its
-        own, so that the encoding of the picture stays."""
+                  progress: Callable[[str, float], Any], colormap: Optional[str] = None,
+                  mode: str = "over") -> Image:
+        """With a preset in place of the look, or with none, and other colours; by a
+        volume of its own, so that the encoding of the picture stays."""
         options: dict[str, Any] = {
-            **self._options(recipe), "size": side, "mode": "over",
+            **self._options(recipe), "size": side, "mode": mode,
             "letters": False, "legend": False,
             "quality": "draft"}
         look = Look(preset=preset) if preset else self.look or Look()
+        if colormap:
+            look = Look(preset=preset or None, colormap=colormap)
         return self._twin()._picture(look, progress=progress, quiet=True, **options)
 
     def _twin(self) -> Volume:

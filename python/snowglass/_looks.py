@@ -19,9 +19,10 @@ class Look:
     volume's histogram.
 
     preset        a name of `snowglass.presets()`
-    colormap      a name of `snowglass.colormaps()`, reversed by _r, or colours at data
-                  values, "60:#000000,255:#ff8800"; where Matplotlib is installed also
-                  one of its maps, by name or itself; replaces the colours
+    colormap      a name of `snowglass.colormaps()`, reversed by _r; "reversed": those
+                  of the look the other way round; or colours at data values,
+                  "60:#000000,255:#ff8800"; where Matplotlib is installed also one
+                  of its maps, by name or itself; replaces the colours
                   (`cmap` is another name for it)
     range         (low, high): the data values over which colours and opacities
                   are spread; "full": from the smallest to the largest;

@@ -407,14 +407,17 @@ class Viewing:
 
     def _answer_thumbnail(self, name: str, question: dict[str, Any]) -> None:
         preset, pane = str(question["preset"]), int(question["pane"])
+        colormap = question.get("colormap")
         revision = self.revision
-        if not 4 <= pane <= 255 or \
+        maps = [name + end for name in _snowglass.names("colormaps") for end in ("", "_r")]
+        if not 4 <= pane <= 255 or colormap not in (None, *maps) or \
                 preset and preset not in _snowglass.names("presets"):
             return
 
         def go_on(stage: str, part: float) -> None:
             if self.ended or self.revision != revision:
                 raise Stale
-        image = self.drawing.thumbnail(self.recipe, preset, THUMBNAIL_SIDE,
-                                       go_on)
+        image = self.drawing.thumbnail(
+            self.recipe, preset, THUMBNAIL_SIDE, go_on, colormap,
+            "mip" if question.get("mode") == "mip" else "over")
         self.send({"t": "frame", "to": name}, pack(image, 1, pane, 0))

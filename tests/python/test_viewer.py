@@ -205,6 +205,11 @@ class Viewers(InFolder):
         thumbnail = page.wait(lambda: next(
             (each for each in page.frames if each.pane == 7), None))
         self.assertEqual((thumbnail.width, thumbnail.height), (96, 96))
+        for pane, asked in ((8, {"colormap": "hot"}), (9, {"colormap": "grey_r", "mode": "mip"})):
+            page.question("thumbnail", preset="", pane=pane, **asked)
+            other = page.wait(lambda: next(
+                (each for each in page.frames if each.pane == pane), None))
+            self.assertNotEqual(other.bytes, thumbnail.bytes)
         page.set(zoom=0.3)
         page.question("fit")
         page.wait(lambda: page.last("state")["keys"]["zoom"] > 0.6)
