@@ -341,7 +341,8 @@ static int make(snow_context *context, const options *opts,
                 const snow_volume *volume, page_text *page) {
     const snow_volume_info *info = snow_volume_get_info(volume);
     /* The page is sent away; a patient's file may be called by a name. */
-    const bool person = info->medical || *info->modality;
+    const bool person = (info->medical || *info->modality) &&
+                        strncmp(opts->operands[0], "phantom:", 8) != 0;
     char *recipe = recipe_text(opts, info, opts->tf ? name_of(opts->tf) : NULL);
     begin_script(page, person ? "volume" : name_of(opts->operands[0]),
                  recipe ? recipe : "{}");

@@ -1,6 +1,7 @@
 /* formats/masked.c - a volume and its mask, both from files. */
 #include "formats/opening.h"
 #include "io/source.h"
+#include "volume/clip_planes.h"
 #include "volume/mask.h"
 
 #include <math.h>

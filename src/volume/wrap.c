@@ -18,9 +18,9 @@ static snow_status take_spacing(snow_context *context, const double spacing[3],
 }
 
 /* Its last row may be left at zeros. */
-static void take_matrix(const double matrix[4][4], double own[4][4]) {
+static void take_matrix(const snow_volume_info *info, double own[4][4]) {
     static const double zero[4];
-    memcpy(own, matrix, 4 * sizeof *own);
+    memcpy(own, info->matrix, sizeof info->matrix);
     if (memcmp(own[3], zero, sizeof zero) == 0)
         own[3][3] = 1;
 }
@@ -40,7 +40,7 @@ snow_status snow_volume_wrap(snow_context *context,
     memcpy(own.dims, info.dims, sizeof own.dims);
     own.type = info.type;
     if (memcmp(info.matrix, zero, sizeof zero) != 0)
-        take_matrix(info.matrix, own.matrix);
+        take_matrix(&info, own.matrix);
     else
         SNOW_TRY(take_spacing(context, info.spacing, &own));
     own.slope = info.slope == 0 ? 1 : info.slope;
