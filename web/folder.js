@@ -72,7 +72,7 @@ export class Folder {
         this.recipes = make('ul', {'aria-label': 'Recipes', className: 'tiles'});
         this.faults = make('ul', {});
         this.second = make('section', {hidden: true}, make('h3', {textContent: 'Recipes, the newest first'}), this.recipes);
-        this.summary = make('summary', {});
+        this.summary = make('summary', {textContent: 'Files that cannot be opened'});
         this.third = make('details', {hidden: true}, this.summary, this.faults);
         this.rest = make('p', {className: 'faint'});
         this.lists = make('div', {className: 'lists'}, this.volumes, this.second, this.third, this.rest);
