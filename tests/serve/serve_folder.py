@@ -29,6 +29,7 @@ TOP = tempfile.TemporaryDirectory()
 ROOT = os.path.join(TOP.name, "study")
 SECRET = os.path.join(TOP.name, "secret.nrrd")
 DIMS = (12, 10, 8)
+AGAIN = os.path.join(TOP.name, "again.png")
 MARK = 77  # of the file outside
 
 
@@ -197,7 +198,7 @@ def opens_what_was_chosen(server, page, entries):
     check("a series opens", info and info["dims"] == [24, 24, 6] and info["name"] == "hospital", f"{info} {page.why}")
     shown = page.receive_picture(2)
     command = page.ask("command")["text"]
-    check("its picture is that of its command", "--series 1.2.3.9" in command and run_command(command) == shown, command)
+    check("its picture is that of its command", "--series 1.2.3.9" in command and run_command(command, out=AGAIN) == shown, command)
     check("and so is that of another page", Page(server).receive_text("info")["dims"] == [24, 24, 6])
     page.set(2, azimuth=50, title="kept by none")
     again = opened(page, name="sub/b.nii", series="")
@@ -208,7 +209,7 @@ def opens_what_was_chosen(server, page, entries):
     check("a recipe opens its volume as it was", warm and warm["name"] == "b.nii" and
           page.state.get("azimuth") == 33 and page.state.get("preset") == "linear", page.state)
     shown, command = page.rest(9, size=[64, 48]), page.ask("command")["text"]
-    check("and has a command", run_command(command) == shown, command)
+    check("and has a command", run_command(command, out=AGAIN) == shown, command)
 
 
 def stays_closed(page, entries):
@@ -234,8 +235,18 @@ def follows_what_changes(page, entries):
     check("a file that cannot be read to its end is refused", opened(page, name="sub/half.nii.gz", series="") is None and
           page.why, page.why)
     check("and the one before comes back", page.ask("value", at=[3, 2, 1])["value"] == voxel(3, 2, 1))
-    shown, command = page.rest(30, size=[60, 48]), page.ask("command")["text"]
-    check("whole", run_command(command) == shown, command)
+    page.set(30, size=[60, 48])
+    shown, page.replaced = None, None
+    while not shown:
+        kind, message = page.hear()
+        if kind == "text" and message["t"] == "replaced":
+            page.replaced = message
+        elif kind == "picture":
+            page.say({"t": "ack", "n": 0})
+            shown = message[32:] if message[8] == 2 else None
+    command = page.ask("command")["text"]
+    check("whole", run_command(command, out=AGAIN) == shown, command)
+    check("and is not taken for another file", page.replaced is None, page.replaced)
     target = in_root("sub", "ü.npy")
     os.remove(target)
     check("a file that is gone is said to be", opened(page, name="sub/ü.npy", series="") is None and
@@ -251,6 +262,9 @@ def follows_what_changes(page, entries):
           "leads out" in page.why, page.why)
     os.remove(in_root("hospital", "CT2_000x.dcm"))
     slices("hospital", "1.2.3.1", "CT", "20240306", 1, 9, 20)
+    slices("hospital", "1.2.3.5", "PT", "", 7, 3, 10)
+    check("another series in the place of one that was listed is refused", opened(
+        page, entry=index_of(entries, "hospital", "1.2.3.5")) is None and "other series" in page.why, page.why)
     info = opened(page, entry=index_of(entries, "hospital", "1.2.3.4"))
     check("a new series moves no other", info and info["dims"] == [16, 16, 4], f"{info and info['dims']} {page.why}")
 
