@@ -9,6 +9,7 @@
 
 /* Seconds between two lines, for a log and for a terminal. */
 #define LINE_SECONDS 10
+#define ALWAYS_SECONDS 1
 #define LIVE_SECONDS 0.2
 
 void movie_progress_begin(movie_progress *progress, const options *opts,
@@ -52,8 +53,11 @@ void movie_progress_step(movie_progress *p, int64_t index, bool rendered) {
     bool live = progress_is_live();
     char line[160];
     p->rendered += rendered;
-    if (!progress_is_wanted(p->opts) ||
-        now - p->last < (live ? LIVE_SECONDS : LINE_SECONDS))
+    const bool always = strcmp(p->opts->progress, "always") == 0;
+    const double pause = live     ? LIVE_SECONDS
+                         : always ? ALWAYS_SECONDS
+                                  : LINE_SECONDS;
+    if (!progress_is_wanted(p->opts) || now - p->last < pause)
         return;
     p->last = now;
     *line = 0;

@@ -282,6 +282,7 @@ char *config_command(const options *opts, const verb_row *verb,
             json_object_del(usual, "mode");
         if (verb->bit == VERB_SLICE)
             json_object_del(usual, "size"); /* or on the slice */
+        json_object_del(usual, "fps");      /* or on the number of steps */
         write_command(out, opts, verb, tree, usual);
         json_decref(usual);
     }

@@ -285,7 +285,7 @@ const option_row option_table[] = {
     {"progress", 0, "auto|always|never", TOPIC_RUN, FILED, read_choice,
      FIELD(progress), 0, 0, "progress on stderr. auto: a status line or bar on a terminal, otherwise "
      "a line every 10 s; always: without a terminal also a line for each "
-     "stage; never: none (default auto)"},
+     "stage, and each second of a movie; never: none (default auto)"},
     {"stats", 0, "FILE", TOPIC_RUN, FILED, read_text, FIELD(stats), 0, 0, "write timings and other figures as JSON; - is stdout; replacing a file "
      "needs --overwrite"},
     {"verbose", 'v', NULL, TOPIC_RUN, EVERY, read_constant, FIELD(verbosity), 1,

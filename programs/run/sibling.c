@@ -6,15 +6,12 @@
 #include "run/log.h"
 
 #include <errno.h>
-#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* The path of a program beside this one; false where that is not known, or
- * nothing is there to be run. */
-static bool find_beside(const char *name, char path[PATH_MAX]) {
+bool sibling_find(const char *name, char path[PATH_MAX]) {
     char self[PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
     if (length <= 0)
@@ -43,7 +40,7 @@ static int refuse(const char *name) {
 int sibling_become(const char *name, char **argv) {
     char path[PATH_MAX];
     argv[0] = (char *)name;
-    if (find_beside(name, path))
+    if (sibling_find(name, path))
         execv(path, argv);
     else
         execvp(name, argv);
