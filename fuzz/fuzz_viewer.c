@@ -2,6 +2,7 @@
  * message of a page or, after a first line "guard", the headers Host and
  * Origin, a secret and a path, each on a line. */
 #include "message.c"
+#include "movies/order.c"
 #include "net/guard.c"
 
 #include <stdlib.h>
@@ -22,6 +23,11 @@ static void check_message(const char *text, size_t length) {
     if (m.kind == MESSAGE_SET)
         json_object_foreach(m.keys, key, value) if (!message_may_set(key))
             abort();
+    movie_order order;
+    if (m.kind == MESSAGE_ASK && order_read(m.tree, 9, &order) &&
+        (order.frames < 1 || order.frames > ORDER_FRAMES_MOST ||
+         order.frames * order.width * order.height > ORDER_PIXELS_MOST))
+        abort();
     char *written = json_dumps(m.tree, JSON_COMPACT | JSON_REAL_PRECISION(17));
     if (!written)
         abort();

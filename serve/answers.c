@@ -7,6 +7,8 @@
 #include "draw/small.h"
 #include "draw/values.h"
 #include "message.h"
+#include "movies/command.h"
+#include "movies/times.h"
 #include "pack.h"
 #include "recipe_file.h"
 #include "run/log.h"
@@ -66,17 +68,52 @@ static json_t *recipe_for(viewer_state *s, const viewer_question *question) {
     return recipe;
 }
 
-static void answer_command(drawing *d, viewer_state *s, outbox *box,
-                           const viewer_question *question, unsigned verb) {
-    const uint64_t client = question->client;
-    json_t *recipe = recipe_for(s, question);
-    int done = drawing_apply(d, recipe);
-    char *command = done == CONTINUE ? drawing_command(d, verb) : NULL;
+static void put_command(outbox *box, uint64_t client, char *command) {
     if (command)
         answer_put(box, client, MESSAGE_PLAIN,
                    json_pack("{s:s, s:s}", "t", "command", "text", command));
     free(command);
+}
+
+static void answer_command(drawing *d, viewer_state *s, outbox *box,
+                           const viewer_question *question) {
+    json_t *recipe = recipe_for(s, question);
+    if (drawing_apply(d, recipe) == CONTINUE)
+        put_command(box, question->client, drawing_command(d));
     json_decref(recipe);
+}
+
+char *answer_movie(drawing *d, viewer_state *s, outbox *box,
+                   const viewer_question *question, movie_order *order,
+                   char name[100]) {
+    json_t *recipe = state_recipe(s);
+    char *command = NULL;
+    if (!order_read(question->tree, d->state.whole.times, order))
+        answer_said(box, question->client, order->fault);
+    else if (drawing_apply(d, recipe) == CONTINUE)
+        command = movie_command(d, order, name);
+    json_decref(recipe);
+    return command;
+}
+
+static void answer_movie_command(drawing *d, viewer_state *s, outbox *box,
+                                 const viewer_question *question) {
+    movie_order order;
+    char name[100];
+    put_command(box, question->client,
+                answer_movie(d, s, box, question, &order, name));
+}
+
+/* {"what": "times"} */
+static int answer_times(drawing *d, outbox *box, uint64_t client,
+                        const json_t *tree) {
+    json_t *texts;
+    int done = times_read(d, &texts);
+    (void)tree;
+    if (done == CONTINUE)
+        answer_put(box, client, MESSAGE_PLAIN,
+                   json_pack("{s:s, s:O}", "t", "times", "texts", texts));
+    return done;
 }
 
 /* As a text, which keeps the order and the digits of its keys. */
@@ -276,9 +313,9 @@ static void answer_file(drawing *d, viewer_state *s, outbox *box,
 static bool answer_state(drawing *d, viewer_state *s, outbox *box,
                          const viewer_question *question, const char *what) {
     if (strcmp(what, "command") == 0)
-        answer_command(d, s, box, question, VERB_RENDER);
+        answer_command(d, s, box, question);
     else if (strcmp(what, "movie-command") == 0)
-        answer_command(d, s, box, question, VERB_TURNTABLE);
+        answer_movie_command(d, s, box, question);
     else if (strcmp(what, "recipe") == 0)
         answer_file(d, s, box, question, false);
     else if (strcmp(what, "look-file") == 0)
@@ -342,6 +379,7 @@ int answer_question(drawing *d, viewer_state *s, outbox *box,
         {"value", answer_value, true},
         {"measures", answer_measures, true},
         {"probe", answer_probe, true},
+        {"times", answer_times, false},
         {"depth", answer_depth, false}};
     const char *what =
         json_string_value(json_object_get(question->tree, "what"));

@@ -3,6 +3,7 @@
 #define ANSWERS_H
 
 #include "draw/drawing.h"
+#include "movies/order.h"
 #include "net/outbox.h"
 #include "state.h"
 
@@ -59,6 +60,12 @@ void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree,
  * nothing. */
 int answer_question(drawing *d, viewer_state *s, outbox *box,
                     const viewer_question *question);
+
+/* The command of a movie that a page orders of the newest state, to be freed, and
+ * the name of its file; NULL: the page has heard why not. */
+char *answer_movie(drawing *d, viewer_state *s, outbox *box,
+                   const viewer_question *question, movie_order *order,
+                   char name[100]);
 
 /* Of slices and values, which a page waits for: that there is none. */
 void answer_none(outbox *box, uint64_t client, const json_t *tree);

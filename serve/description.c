@@ -124,6 +124,8 @@ void answer_info(drawing *d, outbox *box) {
                                         : json_null());
     json_object_set_new(tree, "fov", json_real(SNOW_FOV_DEFAULT));
     json_object_set_new(tree, "slices", d->live ? json_null() : slices_info(d));
+    json_object_set_new(tree, "movies",
+                        d->offer ? json_incref(d->offer) : json_null());
     json_object_set_new(tree, "live", json_boolean(d->live));
     json_object_set_new(tree, "instance", json_string(identity_of_program()));
     json_object_set_new(tree, "file", json_string(d->identity));

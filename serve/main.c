@@ -12,6 +12,7 @@
 #include "folder/folder.h"
 #include "live.h"
 #include "message.h"
+#include "movies/job.h"
 #include "net/listen.h"
 #include "recipe_file.h"
 #include "render.h"
@@ -48,6 +49,7 @@ typedef struct viewer {
     bool lists; /* a folder, of which a page chooses a volume */
     live *live;     /* in its place; or NULL */
     folder *folder; /* of which pages choose a volume; or NULL */
+    movie_job *job; /* or NULL */
 } viewer;
 
 /* A signal ends the serving in order. */
@@ -219,6 +221,34 @@ static void say_tunnel(const viewer *v) {
             port + 1, v->sockets.host, server);
 }
 
+/* What a page orders: of a file that is still the one that is shown. */
+static void write_movie(void *user, drawing *d, viewer_state *s,
+                        const viewer_question *question) {
+    viewer *v = user;
+    movie_order order;
+    char name[100], now[IDENTITY_BYTES];
+    const char *fault = NULL;
+    identity_of(d->opts.operands[0], now);
+    if (strcmp(now, d->identity) != 0)
+        fault = "movie: the file was replaced since it was opened; open the "
+                "new one first";
+    char *command =
+        fault ? NULL : answer_movie(d, s, v->box, question, &order, name);
+    if (command)
+        fault = job_begin(v->job, command, name, &order);
+    if (fault)
+        answer_said(v->box, question->client, fault);
+}
+
+/* Many ranks write movies by the command alone. */
+static bool offer_movies(viewer *v) {
+    if (process_ranks() > 1)
+        return true;
+    v->job = job_new(v->box);
+    v->drawing.offer = v->job ? job_offer() : NULL;
+    return v->job != NULL;
+}
+
 /* The one line that a script reads. */
 static int print_url(const viewer *v) {
     say_tunnel(v);
@@ -226,11 +256,20 @@ static int print_url(const viewer *v) {
     return finish_stdout();
 }
 
+/* Questions that no picture is waited for. */
+static bool hear(void *user, uint64_t client, const json_t *question) {
+    viewer *v = user;
+    const char *what = json_string_value(json_object_get(question, "what"));
+    const bool cancels = v->job && strcmp(what, "movie-cancel") == 0;
+    if (cancels)
+        job_cancel(v->job);
+    return cancels || (v->folder && folder_hear(v->folder, client, question));
+}
+
 /* Ends the drawing when it ends itself. */
 static void *listen_to_pages(void *user) {
     viewer *v = user;
-    listener_run(v->listener, v->state, v->box, v->folder ? folder_hear : NULL,
-                 v->folder);
+    listener_run(v->listener, v->state, v->box, hear, v, v->job);
     state_end(v->state);
     return NULL;
 }
@@ -263,6 +302,8 @@ static int draw_all(viewer *v) {
 
 static int serve(viewer *v) {
     watch_signals(v->listener);
+    if (!offer_movies(v))
+        return fail_start(ENOMEM);
     if (!v->folder)
         renderer_begin(&v->drawing, v->state, v->box);
     int done = print_url(v);
@@ -273,7 +314,8 @@ static int serve(viewer *v) {
     v->pack = packer_new(v->box);
     if (v->pack)
         v->renderer = renderer_new(&v->drawing, v->state, v->box, v->pack,
-                                   v->folder ? &opener : NULL);
+                                   v->folder ? &opener : NULL,
+                                   v->job ? write_movie : NULL, v);
     say_to(show_line, v->box);
     if (v->renderer && (!v->folder || folder_start(v->folder)) &&
         start_listening(v))
@@ -317,6 +359,8 @@ static void close_all(viewer *v) {
     packer_free(v->pack);
     drawing_close(&v->drawing);
     folder_free(v->folder);
+    job_free(v->job);
+    json_decref(v->drawing.offer);
     listener_free(v->listener);
     outbox_free(v->box);
     state_free(v->state);

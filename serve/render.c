@@ -32,6 +32,8 @@ struct renderer {
     bool reopened;
     renderer_opener opener; /* of another volume; NULLs: there is none */
     double radius; /* of the volume that was read last */
+    order_fn *order; /* writes movies; NULL: nobody does */
+    void *order_user;
 };
 
 static bool asks_for_end(void *user) {
@@ -201,8 +203,7 @@ static outcome draw_state(renderer *r, int level, const json_t *recipe,
     return o;
 }
 
-static bool reopens(renderer *r, const json_t *question) {
-    const char *what = json_string_value(json_object_get(question, "what"));
+static bool reopens(renderer *r, const char *what) {
     if (strcmp(what, "reopen") != 0 || process_ranks() > 1 ||
         r->drawing->waits)
         return false;
@@ -273,14 +274,21 @@ static bool opens(renderer *r, const viewer_question *question) {
 }
 
 static void serve_answer(renderer *r, const viewer_question *question) {
-    if (reopens(r, question->tree) || opens(r, question)) {
+    const char *what =
+        json_string_value(json_object_get(question->tree, "what"));
+    if (reopens(r, what) || opens(r, question)) {
         json_decref(question->tree);
         return;
     }
+    const bool orders = r->order && strcmp(what, "movie") == 0;
+    if (orders && !r->drawing->waits)
+        r->order(r->order_user, r->drawing, r->state, question);
     if (r->drawing->waits) {
         answer_none(r->box, question->client, question->tree);
         answer_said(r->box, question->client,
                     "Nothing is open yet: choose a volume.");
+    }
+    if (orders || r->drawing->waits) {
         json_decref(question->tree);
         return;
     }
@@ -406,13 +414,19 @@ static bool show_progress(void *user, snow_stage stage, double fraction) {
 }
 
 renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack,
-                       const renderer_opener *opener) {
+                       const renderer_opener *opener, order_fn *order,
+                       void *order_user) {
     double middle[3];
     renderer *r = malloc(sizeof *r);
     if (!r)
         return NULL;
-    *r = (renderer){
-        .drawing = d, .state = s, .box = box, .pack = pack, .level = -1};
+    *r = (renderer){.drawing = d,
+                    .state = s,
+                    .box = box,
+                    .pack = pack,
+                    .level = -1,
+                    .order = order,
+                    .order_user = order_user};
     if (opener)
         r->opener = *opener;
     r->good = state_recipe(s);

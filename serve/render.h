@@ -24,10 +24,15 @@ typedef struct renderer_opener {
     void *user;
 } renderer_opener;
 
-/* Takes over the drawing.  `opener`: or NULL, where there is nothing else to be
+/* Writes the movie that a page orders (movies/order.h); it has an answer. */
+typedef void order_fn(void *user, drawing *d, viewer_state *s,
+                      const viewer_question *question);
+
+/* Takes over the drawing, and has its orders filled (NULL: by nobody).  `opener`: or NULL, where there is nothing else to be
  * opened.  NULL: no memory. */
 renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack,
-                       const renderer_opener *opener);
+                       const renderer_opener *opener, order_fn *order,
+                       void *order_user);
 
 /* Does what is to be done next, and says what that was.  Waits for it where due
  * is NULL, until WORK_END (state_next). */

@@ -19,7 +19,7 @@ typedef struct viewer_question {
     uint64_t client;
     json_t *tree; /* the caller's after state_next */
     bool waits;   /* a thumbnail, which takes long: until the picture rests */
-    bool slow;    /* a histogram, which pictures come between */
+    bool slow;    /* histogram and times, which pictures come between */
 } viewer_question;
 
 /* What the renderer is to do next. */

@@ -16,7 +16,7 @@ const FATAL = [4400, 4401, 4429]; // a message that it does not take, the secret
 /**
  * Events by name: 'open', 'closed', 'picture', 'small' (of a slice or a preset,
  * in its pane), and the kinds of texts (info, look, state, figures, progress,
- * histogram, command, said, slice, value, depth).
+ * histogram, command, said, slice, value, depth, times, movie).
  */
 export class ServerEngine {
     /** @param {string} token */
@@ -91,6 +91,12 @@ export class ServerEngine {
     say(message) {
         if (this.socket?.readyState === WebSocket.OPEN)
             this.socket.send(JSON.stringify(message));
+    }
+
+    /** What the server has for this page; the secret is no part of the address.
+     * @param {string} name */
+    fetch(name) {
+        return fetch(new URL(name, location.href), {headers: {'x-auth-token': this.token}});
     }
 
     /** Of the recipe as it is now.

@@ -88,6 +88,8 @@ const GUIDE = [
     ['Measure', '"Measures" draws lengths and angles, on slices and on the surface, and ellipses on slices, with the ' +
         'mean of their values. The pointer at rest shows the place and the value under it.'],
     ['Cut', '"Clip" has planes with handles on the picture; "Cut here" cuts what is before the middle.'],
+    ['Time and movies', '"Time", where the file has several steps, plays them. "Movie" has a turn, or these steps, ' +
+        'written where the viewer runs, and saves the file here.'],
     ['Take back, save, share', '"Undo" takes back what you did, "Reset" all of it. "Picture" saves what is shown ' +
         'once it is final. "Link" and "Recipe" keep the state, for you or others; "Command" is the command ' +
         'that makes the same picture, byte for byte.']];

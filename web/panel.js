@@ -41,14 +41,18 @@ export class Panel {
     /** @param {import('./store.js').Store} store
      * @param {import('./types').Actions} actions
      * @param {import('./slices.js').Slices} slices
-     * @param {import('./measure.js').Measure} measure */
-    constructor(store, actions, slices, measure) {
+     * @param {import('./measure.js').Measure} measure
+     * @param {import('./time.js').Times} times
+     * @param {import('./movies.js').Movies} movies */
+    constructor(store, actions, slices, measure, times, movies) {
         const {engine} = store;
         this.store = store;
         this.engine = engine;
         this.actions = actions;
         this.slices = slices;
         this.measure = measure;
+        this.times = times;
+        this.movies = movies;
         /** @type {HTMLDetailsElement|null} */
         this.clips = null;
         this.whole = [0, 0, 0]; // voxels without a crop
@@ -74,7 +78,7 @@ export class Panel {
         this.element.replaceChildren(this.channels.element, this.presets.build(), this.look(),
             this.colors.element,
             section('Opacity by gradient', false, this.gradient.element), this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), this.measure.section(this.actions.measure), this.clipping(), this.shading(),
-            this.time(), this.labels());
+            this.times.section(each => this.follow(each)), this.movies.section(this.actions.movie), this.labels());
         this.update();
     }
 
@@ -419,20 +423,6 @@ export class Panel {
             });
         });
         return list;
-    }
-
-    time() {
-        const {info, store} = this, told = make('output');
-        if (info.times < 2)
-            return '';
-        const input = slider('time step', 0, info.times - 1, 1, store,
-            value => store.set({time: value}));
-        this.follow(keys => {
-            input.value = `${keys.time ?? 0}`;
-            told.textContent = `${keys.time ?? 0} / ${info.times - 1}`;
-        });
-        return section('Time', true, row('Step', input, told),
-            button('Play', 'Play or stop the time steps (Space)', this.actions.play));
     }
 
     labels() {

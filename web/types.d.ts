@@ -53,7 +53,8 @@ export type Info = {
     presets: [name: string, text: string][], colormaps: string[], tf: boolean, fov: number,
     channels?: string[], keys?: string[], mask?: boolean, overlay?: string | null, labels?: string | null,
     slices?: SliceInfo[] | null, live?: boolean, instance?: string, file?: string, window: Pair,
-    hounsfield?: boolean, value_unit?: string, opened?: number, modality?: string};
+    hounsfield?: boolean, value_unit?: string, opened?: number, modality?: string,
+    movies?: {formats: string[], note: string} | null};
 
 export type Label = [value: number, name: string, color: string, opacity: number];
 /** One that is drawn alone has no map. */
@@ -91,6 +92,11 @@ export type Frame = {
     n: number, level: number, kind: number, pane: number, width: number, height: number,
     render: number, pack: number, data: ArrayBuffer, bytes: number, blob: Blob, bitmap?: ImageBitmap};
 
+/** The movie that the server writes (serve/movies/job.h). */
+export type Movie = {
+    state: 'none' | 'writing' | 'done' | 'failed' | 'cancelled', name: string, tag: string, frame: number,
+    frames: number, bytes: number, text: string};
+
 /** What is heard of the server, and of the connection, by name. */
 export type Heard = {
     open: undefined, closed: string, measured: number, picture: Frame, small: Frame,
@@ -100,7 +106,7 @@ export type Heard = {
     value: {at: number[], value: number | null}, depth: {x: number, y: number, depth: number | null},
     replaced: {gone: boolean, again: boolean}, measures: {of: string, measures: Result[]}, probe: Probe,
     folder: Listed, entries: {from: number, entries: Entry[]}, cover: {entry: number, image: string | null},
-    opened: {good: boolean}};
+    opened: {good: boolean}, times: {texts: string[]}, movie: Movie};
 
 /** The renderer, wherever it is. */
 export interface Engine {
@@ -111,6 +117,9 @@ export interface Engine {
     ask(what: string, more?: object): void;
     set(changes: Changes): void;
     moving(on: boolean): void;
+    flush(): void;
+    fetch(name: string): Promise<Response>;
+    step: number; // the newest set
     flat?: boolean; // it finds no surface
 }
 

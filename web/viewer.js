@@ -8,12 +8,14 @@ import {Folder} from './folder.js';
 import {Hints, help} from './help.js';
 import {MODES, MODE_NAMES, listenToKeys} from './keys.js';
 import {MEASURES, Measure} from './measure.js';
+import {Movies} from './movies.js';
 import {Overlay} from './overlay.js';
 import {Panel} from './panel.js';
 import {Pointer, TOOLS} from './pointer.js';
 import {isLook} from './presets.js';
 import {Slices} from './slices.js';
 import {Store, known} from './store.js';
+import {Times} from './time.js';
 import {leftOut, sifted} from './valid.js';
 
 /** @typedef {import('./types').Keys} Keys */
@@ -126,7 +128,6 @@ const baseName = () => known(store.info).name.split(':').at(-1)?.split('.')[0] |
 
 // --- actions --------------------------------------------------------------------
 
-let player = 0;
 /** @type {import('./types').Actions} */
 const actions = {
     view(name) {
@@ -148,15 +149,7 @@ const actions = {
         store.set({perspective: on ? 0 : known(store.info).fov});
     },
     letters: () => store.set({'no-labels': store.keys['no-labels'] ? null : true}),
-    play() {
-        const {times} = known(store.info);
-        if (player || times < 2) {
-            clearInterval(player);
-            player = 0;
-            return;
-        }
-        player = setInterval(() => store.set({time: ((store.keys.time ?? 0) + 1) % times}), 200);
-    },
+    play: () => times.play(),
     drag() {
         tool.value = store.tool = TOOLS[(TOOLS.findIndex(([name]) => name === store.tool) + 1) % TOOLS.length][0];
         measure.take(null);
@@ -177,7 +170,7 @@ const actions = {
             panel.clips.open = !panel.clips.open;
     },
     command: () => engine.ask('command'),
-    movie: () => engine.ask('movie-command'),
+    movie: () => engine.ask('movie-command', movies.order),
     link() {
         const url = new URL(location.href);
         const {size, ...keys} = store.keys; // all of them: elsewhere no look was before
@@ -356,7 +349,10 @@ const slices = new Slices(store, views);
 const pointer = new Pointer(canvas, store, (x, y) => engine.ask('depth', {x, y, size: [canvas.width, canvas.height]}));
 /** @type {Measure} */
 const measure = new Measure(store, pointer, slices, views, () => actions.measure(measure.tool));
-const panel = new Panel(store, actions, slices, measure);
+const times = new Times(store, () => panel.update());
+const movies = new Movies(store, times, save);
+/** @type {Panel} */
+const panel = new Panel(store, actions, slices, measure, times, movies);
 const overlay = new Overlay(store, pointer, slices);
 const hints = new Hints(store);
 const folder = new Folder(store, chooseFile);
@@ -490,7 +486,7 @@ engine.on('folder', () => {
     tip(chooser, 'Open another volume of the folder, or a recipe (o)');
 });
 const commanded = button('Command', 'Copy the command that makes this picture (c)', actions.command);
-const filmed = button('Movie', 'Copy the command that makes a movie of a turn (v)',
+const filmed = button('Movie', 'Copy the command of the movie that "Movie" in the panel makes (v)',
     actions.movie);
 buttons.append(tip(make('label', {}, 'Drag ', tool), 'What a drag, and arrow keys, do (d: the next)'), sliced,
     commanded, filmed,
@@ -522,5 +518,5 @@ document.addEventListener('drop', event => {
     shared.take(event.dataTransfer?.files ?? []);
 });
 // For the console, for tests, and for a page that opens volumes.
-const shared = {engine, store, recipe: store, page: store, editor: panel.editor, slices, measure, overlay, take, file};
+const shared = {engine, store, recipe: store, page: store, editor: panel.editor, slices, measure, overlay, times, movies, take, file};
 Object.assign(window, {snowglass: shared});

@@ -362,6 +362,9 @@ void drawing_empty(drawing *d) {
     snow_volume_close(s->volume);
     s->transfer = NULL;
     s->volume = NULL;
+    json_decref(d->times); /* it may be another file */
+    d->times = NULL;
+    d->times_are_known = false;
     s->in_slabs = s->channels.chosen = false;
     s->drawn.path = NULL; /* the next picture is the first one */
     d->followed = 0;

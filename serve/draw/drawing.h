@@ -82,6 +82,9 @@ struct drawing {
     uint32_t followed;  /* the state that the last answer was made for */
     int followed_done;  /* and what came of it */
     char *measure_key;  /* what the measures are of */
+    json_t *times;      /* texts of the file's steps (movies/times.h) */
+    bool times_are_known;
+    json_t *offer; /* the movies that pages can order; NULL: none */
     char *share_key;    /* what the share is of (share.h) */
     double share;
     draw_fn *draw;          /* instead of render_state_draw; or NULL */
@@ -156,8 +159,10 @@ void drawing_name_output(const char *input, const char *slice, char out[100]);
  * shows (snowglass/view.h). */
 void drawing_middle(const drawing *d, double middle[3], double *radius);
 
-/* The command that makes the picture at rest (VERB_RENDER), or the movie of a
- * turn that begins with it (VERB_TURNTABLE), to be freed. */
-char *drawing_command(const drawing *d, unsigned verb);
+/* The command that makes the picture at rest, to be freed. */
+char *drawing_command(const drawing *d);
+
+/* That of options, whose output is named, by a verb. */
+char *drawing_command_of(const options *opts, unsigned verb);
 
 #endif

@@ -148,20 +148,13 @@ void drawing_options(const drawing *d, options *out) {
     mixed_settle(d, out);
 }
 
-char *drawing_command(const drawing *d, unsigned verb) {
-    static options opts; /* large; one thread draws */
-    char output[100];
-    drawing_options(d, &opts);
-    drawing_name_output(opts.operands[0], "", output);
-    if (verb == VERB_TURNTABLE)
-        memcpy(strrchr(output, '.'), ".mp4", 4);
-    opts.output = output;
-    json_t *tree = config_tree(&opts, verb_of(verb));
+char *drawing_command_of(const options *opts, unsigned verb) {
+    json_t *tree = config_tree(opts, verb_of(verb));
     if (!tree)
         return NULL;
     if (identity_isa())
         json_object_set_new(tree, "isa", json_string(identity_isa()));
-    char *text = config_command(&opts, verb_of(verb), tree);
+    char *text = config_command(opts, verb_of(verb), tree);
     json_decref(tree);
     return text;
 }
@@ -185,4 +178,13 @@ void drawing_middle(const drawing *d, double middle[3], double *radius) {
     *radius = 0;
     for (int corner = 0; corner < 4; corner++)
         *radius = fmax(*radius, sqrt(square[corner]));
+}
+
+char *drawing_command(const drawing *d) {
+    static options opts; /* large; one thread draws */
+    char output[100];
+    drawing_options(d, &opts);
+    drawing_name_output(opts.operands[0], "", output);
+    opts.output = output;
+    return drawing_command_of(&opts, VERB_RENDER);
 }

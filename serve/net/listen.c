@@ -4,6 +4,7 @@
 #include "answers.h"
 #include "message.h"
 #include "net/client.h"
+#include "net/download.h"
 #include "net/pages.h"
 #include "net/sizes.h"
 
@@ -30,6 +31,7 @@ struct listener {
     guard guard;
     viewer_state *state;
     outbox *box;
+    movie_job *job; /* NULL: no movies */
     client *clients;
     int count;
     uint64_t last_id;
@@ -119,6 +121,8 @@ static void count_clients(listener *l, int change) {
     count_links(l);
     sizes_collect(l->clients, l->state);
     state_set_watchers(l->state, l->count);
+    if (l->job)
+        job_note_pages(l->job, l->count);
     if (!moving && change < 0)
         state_set_moving(l->state, false);
     if (l->count)
@@ -168,6 +172,7 @@ static int greet(listener *l, client *c, const message *m) {
     queue_newest(l, c, MESSAGE_LOOK);
     queue_newest(l, c, MESSAGE_FIGURES);
     queue_newest(l, c, MESSAGE_PICTURE);
+    queue_newest(l, c, MESSAGE_MOVIE);
     send_state(l, c->id, 0);
     count_clients(l, 1);
     return 0;
@@ -297,14 +302,24 @@ static int serve_page(struct lws *wsi, enum lws_callback_reasons reason,
     switch (reason) {
     case LWS_CALLBACK_HTTP:
         note_silent(l, wsi, LISTEN_REQUEST_SECONDS);
-        return pages_answer(wsi, &l->guard, in);
+        if (!download_is_meant(in))
+            return pages_answer(wsi, &l->guard, in);
+        if (download_answer(wsi, &l->guard, l->job, user) != 0)
+            return -1;
+        forget_silent(l, wsi); /* it may take long */
+        return 0;
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE: /* no HTTP/2 */
         return in && strcmp(in, "websocket") == 0 ? 0 : 1;
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
         return 1; /* it named no protocol, or one that is unknown */
     case LWS_CALLBACK_TIMER:
-        return -1;
+        return download_is_open(user) ? 0 : -1;
+    case LWS_CALLBACK_HTTP_WRITEABLE:
+        return download_is_open(user) ? download_send(wsi, user) : 0;
     case LWS_CALLBACK_CLOSED_HTTP:
+        download_close(user);
+        forget_silent(l, wsi);
+        return 0;
     case LWS_CALLBACK_WSI_DESTROY:
         forget_silent(l, wsi);
         return 0;
@@ -366,7 +381,7 @@ static int serve_door(struct lws *wsi, enum lws_callback_reasons reason,
 }
 
 static const struct lws_protocols protocols[] = {
-    {"http", serve_page, 0, 4096, 0, NULL, 0},
+    {"http", serve_page, sizeof(download), 4096, 0, NULL, 0},
     {"snowglass.1", serve_socket, sizeof(client), 16384, 0, NULL, 0},
     {"door", serve_door, 0, 0, 0, NULL, 0},
     {NULL, NULL, 0, 0, 0, NULL, 0},
@@ -430,11 +445,12 @@ void listener_wake(void *user) {
 }
 
 void listener_run(listener *l, viewer_state *state, outbox *box,
-                  listener_hear *hear, void *hearer) {
+                  listener_hear *hear, void *hearer, movie_job *job) {
     l->hear = hear;
     l->hearer = hearer;
     l->state = state;
     l->box = box;
+    l->job = job;
     count_clients(l, 0);
     while (!l->ended && lws_service(l->context, 0) >= 0)
         continue;

@@ -6,6 +6,7 @@
 #ifndef LISTEN_H
 #define LISTEN_H
 
+#include "movies/job.h"
 #include "net/guard.h"
 #include "net/outbox.h"
 #include "net/sockets.h"
@@ -28,10 +29,10 @@ void listener_wake(void *listener);
 
 /* Serves until a signal comes, or no page was there for the idle time.
  * Questions go first to `hear`, if there is one, which says whether it has taken
- * them. */
+ * them.  What a job writes is sent to pages; or NULL. */
 typedef bool listener_hear(void *user, uint64_t client, const json_t *question);
 void listener_run(listener *l, viewer_state *state, outbox *box,
-                  listener_hear *hear, void *hearer);
+                  listener_hear *hear, void *hearer, movie_job *job);
 
 /* Ends listener_run, from any thread and from a signal's handler. */
 void listener_stop(listener *l);

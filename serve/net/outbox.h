@@ -18,6 +18,7 @@ typedef enum message_topic {
     MESSAGE_STATE,
     MESSAGE_FIGURES,
     MESSAGE_PROGRESS,
+    MESSAGE_MOVIE,  /* that is written */
     MESSAGE_COUNTS, /* of the values of a simulation */
     MESSAGE_FOLDER, /* how far the list of a folder is */
     MESSAGE_PICTURE,

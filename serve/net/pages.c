@@ -91,11 +91,15 @@ static int finish(struct lws *wsi, bool good) {
     return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
-static int refuse(struct lws *wsi, unsigned status, const char *text) {
+int pages_refuse(struct lws *wsi, unsigned status, const char *text) {
     if (write_head(wsi, status, NULL, "text/plain; charset=utf-8", false,
                    strlen(text)))
         write_body(wsi, text, strlen(text));
     return -1;
+}
+
+bool pages_head(struct lws *wsi, const char *type, size_t length) {
+    return write_head(wsi, 200, NULL, type, false, length);
 }
 
 static bool header_of(struct lws *wsi, enum lws_token_indexes which, char *out,
@@ -145,17 +149,17 @@ int pages_answer(struct lws *wsi, const guard *g, const char *path) {
     int length;
     header_of(wsi, WSI_TOKEN_HOST, host, sizeof host);
     if (!guard_host(g, host))
-        return refuse(
+        return pages_refuse(
             wsi, 421,
             "This name is not allowed here. Use the printed URL; for "
             "a tunnel or a proxy start with --allow-host NAME:PORT.\n");
     int method = lws_http_get_uri_and_method(wsi, &uri, &length);
     if (method != LWSHUMETH_GET && method != LWSHUMETH_HEAD)
-        return refuse(wsi, 405, "Only GET is understood.\n");
+        return pages_refuse(wsi, 405, "Only GET is understood.\n");
     const char *name = guard_page(path);
     const page_file *file = page_files;
     while (name && file->name && strcmp(file->name, name) != 0)
         file++;
     return name && file->name ? send_file(wsi, file, method == LWSHUMETH_GET)
-                              : refuse(wsi, 404, "There is no such page.\n");
+                              : pages_refuse(wsi, 404, "There is no such page.\n");
 }

@@ -23,6 +23,11 @@ extern const page_file page_files[];
  * none.  The text stays the caller's, and is called for before any request. */
 void pages_embed(const char *origins);
 
+/* The head of an answer that is no file of the page; false: the connection is
+ * lost.  And one that refuses, which returns what a callback of lws does. */
+bool pages_head(struct lws *wsi, const char *type, size_t length);
+int pages_refuse(struct lws *wsi, unsigned status, const char *text);
+
 /* Answers a request.  Returns what a callback of lws does. */
 int pages_answer(struct lws *wsi, const guard *g, const char *path);
 

@@ -13,7 +13,7 @@ import urllib.parse
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from viewer_client import (DATA, SHORT, TOOL, Server, check, finish, run_command, skip,
                            write_channels)
-from volumes import each, nrrd, placed
+from volumes import dated, each, nrrd, placed
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 WEB = os.path.abspath(sys.argv[3])
@@ -64,7 +64,7 @@ def same_bytes(command, picture):
     with open(os.path.join(shots, command)) as text, \
             open(os.path.join(shots, picture), "rb") as shown:
         check(f"{picture} has the bytes of the copied command", run_command(
-            text.read(), out=os.path.join(shots, "again.png")) == shown.read())
+            text.read(), out=os.path.join(shots, "again" + os.path.splitext(picture)[1])) == shown.read())
 
 
 def points(name, opacities):
@@ -198,6 +198,13 @@ def chosen():
     plan("folder", place)
 
 
+def moving():
+    """Six steps with dates."""
+    name = os.path.join(shots, "dated.nc")
+    dated(name, 6)
+    plan("movies", name, copies=[("movie.txt", "movie.webp")])
+
+
 HEAD = "phantom:head", "--dims", "64x64x64"  # a page waits for each picture of it
 if SHORT:
     plan("short", *HEAD, copies=[PICTURE])
@@ -213,6 +220,7 @@ else:
     plan("transfer", *HEAD)
     measured()
     chosen()
+    moving()
     overlaid()
     mixed()
     filmed()

@@ -100,3 +100,31 @@ def channel_words(*channels):
         f'<Channel ID="Channel:0:{n}" Name="{name}"' +
         "".join(f' Color="{color}"' for color in colors) + "/>"
         for n, (name, *colors) in enumerate(channels))
+
+
+def netcdf(name, dims, values, unit):
+    """NetCDF-3 of short values over time, z, y and x; its times are 0, 6, 12 ..."""
+    def text(word):
+        data = word.encode()
+        return struct.pack(">i", len(data)) + data + b"\0" * (-len(data) % 4)
+    axes = list(zip("tzyx", dims[::-1]))
+    head = b"CDF\1" + struct.pack(">iii", 0, 10, 4) + b"".join(
+        text(axis) + struct.pack(">i", count) for axis, count in axes) + struct.pack(">ii", 0, 0)
+    units = struct.pack(">ii", 12, 1) + text("units") + struct.pack(">i", 2) + text(unit)
+    times, data = struct.pack(f">{dims[3]}d", *(6 * t for t in range(dims[3]))), array.array("h", values)
+    data.byteswap()
+
+    def variables(first):
+        return struct.pack(">ii", 11, 2) + text("t") + struct.pack(">ii", 1, 0) + units + struct.pack(
+            ">iii", 6, len(times), first) + text("v") + struct.pack(">iiiii", 4, 0, 1, 2, 3) + struct.pack(
+            ">iiiii", 0, 0, 3, 2 * len(data), first + len(times))
+    with open(name, "wb") as out:
+        out.write(head + variables(len(head + variables(0))) + times + data.tobytes())
+
+
+def dated(name, count):
+    """A ball that grows brighter, in steps of six hours from the year 2000 on."""
+    netcdf(name, (20, 16, 12, count), (
+        max(0, 400 - 9 * ((x - 9) ** 2 + (y - 8) ** 2 + (z - 6) ** 2)) * (1 + t)
+        for t in range(count) for z in range(12) for y in range(16) for x in range(20)),
+           "hours since 2000-01-01 00:00:00")

@@ -13,6 +13,7 @@ import {readFileSync, writeFileSync} from 'node:fs';
 import {asked, restarted, steps} from './everyday.mjs';
 import {listed} from './folder.mjs';
 import {measures} from './measures.mjs';
+import {movies} from './movies.mjs';
 import {automatic, transfer} from './transfer.mjs';
 
 const [playwright, chromium, folder, ...parts] = process.argv.slice(2);
@@ -1417,9 +1418,9 @@ async function more() {
     await page.context().close();
 }
 
-const tools = {accessible: page => judged(page, 'with the axis near'), answered, check, folder, judged, keys, open, shot, part, rest, slicesRest, wheel};
+const tools = {accessible: page => judged(page, 'with the axis near'), answered, check, copied, file, folder, judged, keys, open, shot, part, rest, slicesRest, wheel};
 const known = {short: first, long: all, more, film, steps: () => steps(tools),
-    restarted: () => restarted(tools), asked: () => asked(tools), measures: () => measures(tools), transfer: () => transfer(tools), folder: () => listed(tools), embed: embedded, points: manyPoints, mask: masked,
+    restarted: () => restarted(tools), asked: () => asked(tools), measures: () => measures(tools), transfer: () => transfer(tools), folder: () => listed(tools), movies: () => movies(tools), embed: embedded, points: manyPoints, mask: masked,
     overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, plain: plainChannels, begun, many};
 
 async function run() {
