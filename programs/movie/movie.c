@@ -66,12 +66,15 @@ int movie_check(const options *opts) {
 int movie_open(const options *opts, shot_list *list, movie **out) {
     movie *s = calloc(1, sizeof *s);
     double *times = calloc((size_t)list->count, sizeof *times);
-    if (!s || !times) {
+    measures **measured = calloc((size_t)list->count, sizeof(measures *));
+    if (!s || !times || !measured) {
         free(s);
         free(times);
+        free(measured);
         return fail_memory("out of memory at the start; close other programs");
     }
     s->times = times;
+    s->measured = measured;
     s->opts = opts;
     s->list = list;
     s->encoder.pipe = -1;
@@ -107,6 +110,9 @@ void movie_close(movie *s) {
     encoder_stop(&s->encoder);
     record_close(&s->record);
     snow_context_free(s->context);
+    for (int64_t i = 0; i < s->list->count; i++)
+        free(s->measured[i]);
+    free(s->measured);
     free(s->times);
     free(s);
 }
@@ -281,6 +287,8 @@ static void hand_over(run *r, int64_t index, snow_image *image) {
     }
     r->s->has_annotations = true;
     r->s->times[index] = state->drawn.whole.time_value;
+    r->s->measured[index] = r->shots->measured; /* NULL: as all frames */
+    r->shots->measured = NULL;
     (void)frames_put(r->s->queue, index, image,
                      r->opts->depth ? snow_frame_depth(state->frame) : NULL);
     snow_image_free(r->last);

@@ -56,6 +56,8 @@ static snow_status make_frame(const movie *s, frame_slot *slot) {
     picture_annotations annotations = s->annotations;
     char path[PATH_MAX];
     annotations.info.time_value = s->times[slot->index];
+    if (s->list->steps && !s->list->slices)
+        annotations.measures = s->measured[slot->index];
     if (s->list->slices) {
         annotations.axis = shot->axis;
         annotations.index = &shot->slice;
@@ -72,6 +74,8 @@ static snow_status make_frame(const movie *s, frame_slot *slot) {
     if (status == SNOW_STATUS_OK && s->encoding)
         status = fill_bytes(s, slot, &form);
     snow_overlay_free(overlay);
+    free(s->measured[slot->index]);
+    s->measured[slot->index] = NULL;
     return status;
 }
 

@@ -31,6 +31,7 @@ struct movie {
     picture_annotations annotations; /* known from the first picture on */
     bool has_annotations;
     double *times; /* physical ones of the frames, as their pictures come */
+    measures **measured; /* of each step, until it is drawn */
 };
 
 /* The two halves, and what ends a slot (frames.h); `user` is a movie. */

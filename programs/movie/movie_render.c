@@ -9,6 +9,7 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 int shots_open(const options *opts, shot_renderer *out) {
@@ -19,6 +20,9 @@ int shots_open(const options *opts, shot_renderer *out) {
 }
 
 void shots_close(shot_renderer *shots) {
+    free(shots->begun[0]);
+    free(shots->begun[1]);
+    free(shots->measured);
     render_state_free(&shots->state);
 }
 
@@ -80,7 +84,7 @@ picture_annotations shots_annotations(const shot_renderer *shots) {
         {shots->painted.range[0], shots->painted.range[1]},
         &s->channels,
         layers_legend(&s->layers, s->each_time && shots->count > 1),
-        .measures = s->measures};
+        .measures = s->steps ? shots->measured : s->measures};
 }
 
 /* Frames are annotated elsewhere and silently: what one has no room for is said
@@ -120,9 +124,28 @@ static void report_choices(shot_renderer *shots, snow_image *image) {
 int shots_begin(shot_renderer *shots, const movie_shot *shot) {
     if (shots->draw)
         return shots->draw(shots->user, shot, &shots->made);
+    render_state *s = &shots->state;
     int done = shots_volume(shots, shot);
-    return done == CONTINUE ? render_state_begin(&shots->state, shot->azimuth)
-                            : done;
+    if (done == CONTINUE && s->steps)
+        done = render_state_measure(s, false);
+    if (done == CONTINUE)
+        done = render_state_begin(s, shot->azimuth);
+    if (done != CONTINUE || !s->steps)
+        return done;
+    shots->begun[shots->in_flight++] = s->measures;
+    s->measures = NULL;
+    return CONTINUE;
+}
+
+/* Those of the frame that was begun first. */
+static void take_measures(shot_renderer *shots) {
+    if (!shots->in_flight)
+        return;
+    free(shots->measured);
+    shots->measured = shots->begun[0];
+    shots->begun[0] = shots->begun[1];
+    shots->begun[1] = NULL;
+    shots->in_flight--;
 }
 
 int shots_finish(shot_renderer *shots, snow_image **image) {
@@ -132,6 +155,7 @@ int shots_finish(shot_renderer *shots, snow_image **image) {
         return CONTINUE;
     }
     int done = render_state_finish(&shots->state, image);
+    take_measures(shots);
     if (done == CONTINUE)
         done =
             paint_values(shots->state.opts, shots->state.context,

@@ -20,6 +20,10 @@ struct shot_renderer {
     int (*draw)(void *user, const movie_shot *shot, snow_image **image);
     void *user;
     snow_image *made; /* by it, until it is finished */
+    /* Of steps, whose values differ: what is measured in those that are begun,
+     * and in the last one that was finished. */
+    measures *begun[2], *measured;
+    int in_flight;
 };
 
 /* Returns CONTINUE or an exit code. */

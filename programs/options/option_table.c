@@ -26,7 +26,7 @@ enum {
     SLICE = VERB_SLICE,
     FILED = WRITTEN | SLICE,      /* all verbs whose pictures are files */
     OVERLAID = FILED | SERVE,     /* all verbs that draw overlays */
-    MEASURED = VERB_RENDER | TURNTABLE | SLICE | SERVE | EXPORT,
+    MEASURED = WRITTEN | SLICE | SERVE | EXPORT,
     PICTURE = RENDER | SLICE,     /* all verbs that make pictures */
     LOOKED = PICTURE | VERB_INFO, /* all verbs that use a look */
     REPORT = VERB_REPORT,

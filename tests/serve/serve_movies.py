@@ -124,7 +124,7 @@ def is_of_the_command():
 def is_of_steps():
     viewer = server(steps())
     page = Page(viewer)
-    page.rest(1, size=[64, 48], time=1)
+    page.rest(1, size=[64, 48], time=1, measure="line 2,2,2 12,9,8; ellipse z 6 9,8 4 3")
     texts = page.ask("times")["texts"]
     check("steps have their dates", texts == [f"2000-01-01 {6 * t:02}:00" for t in range(4)], texts)
     asked = {"kind": "movie", "first": 1, "last": 3, "fps": 25, "size": [64, 48], "format": "webp"}

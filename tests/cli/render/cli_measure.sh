@@ -208,6 +208,18 @@ single = measured("render", name, f"ellipse z {place(matrix, [4, 5, 6])[2]:.9g} 
 check("one voxel has no deviation", single["count"] == 1 and single["deviation"] is None and
       near(single["mean"], voxels[4, 5, 6]))
 
+# Frames of steps, whose values differ, against pictures of each.
+growing = np.stack([voxels, voxels / 2], axis=3).astype(np.float32)
+nibabel.save(nibabel.Nifti1Image(growing, matrix), "steps.nii")
+words = list(cases(name, voxels, matrix))[4][0]
+look = ("-q", "-y", "-s", 128, "--preset", "linear", "--range", "0,400", "--fit", "volume",
+        "--measure", words)
+tool("movie", "steps.nii", "-o", "f_%d.png", *look)
+for step in (0, 1):
+    tool("render", "steps.nii", "--time", step, "-o", "one.png", *look)
+    with open(f"f_{step}.png", "rb") as frame, open("one.png", "rb") as one:
+        check(f"a frame has the measures of its step {step}", frame.read() == one.read())
+
 # --- where they are drawn -----------------------------------------------------
 
 
