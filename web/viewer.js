@@ -486,7 +486,7 @@ engine.on('folder', () => {
     tip(chooser, 'Open another volume of the folder, or a recipe (o)');
 });
 const commanded = button('Command', 'Copy the command that makes this picture (c)', actions.command);
-const filmed = button('Movie', 'Copy the command of the movie that "Movie" in the panel makes (v)',
+const filmed = button('Movie', 'Copy the command that makes a movie, as the section Movie has it (v)',
     actions.movie);
 buttons.append(tip(make('label', {}, 'Drag ', tool), 'What a drag, and arrow keys, do (d: the next)'), sliced,
     commanded, filmed,
