@@ -1,6 +1,6 @@
 /* live.c - implements live.h. */
 #include "live.h"
-#include "answers.h"
+#include "answers/answers.h"
 #include "live_file.h"
 #include "message.h"
 

@@ -7,7 +7,7 @@
  * libwebsockets brings many libraries with it.  Of many ranks
  * (snowglass-serve-mpi) the first has these threads, and the others draw with
  * it (ranks.c). */
-#include "answers.h"
+#include "answers/answers.h"
 #include "draw/ranks.h"
 #include "folder/folder.h"
 #include "live.h"

@@ -1,6 +1,6 @@
 /* recipe_file.c - implements recipe_file.h. */
 #include "recipe_file.h"
-#include "answers.h"
+#include "answers/answers.h"
 #include "options/config.h"
 #include "options/config_paths.h"
 

@@ -1,6 +1,6 @@
 /* render.c - implements render.h. */
 #include "render.h"
-#include "answers.h"
+#include "answers/answers.h"
 #include "draw/draft.h"
 #include "draw/share.h"
 #include "draw/shortage.h"

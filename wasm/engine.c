@@ -4,7 +4,7 @@
  * The worker hands in the texts that go to a server elsewhere (message.h),
  * calls engine_step while there is work, and takes out what goes to the page.
  */
-#include "answers.h"
+#include "answers/answers.h"
 #include "message.h"
 #include "pack.h"
 #include "pieces.h"

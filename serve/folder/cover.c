@@ -5,7 +5,7 @@
  * kept. */
 #include "folder/inside.h"
 #include "folder/own.h"
-#include "answers.h"
+#include "answers/answers.h"
 #include "commands/commands.h"
 #include "message.h"
 #include "pack.h"

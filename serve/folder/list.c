@@ -6,7 +6,7 @@
  *   {"t": "entries", "from": 2, "entries": [{"name": "a/head.nii", ...}]} */
 #define _XOPEN_SOURCE 700
 #include "folder/own.h"
-#include "answers.h"
+#include "answers/answers.h"
 #include "run/log.h"
 #include "run/paths.h"
 

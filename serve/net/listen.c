@@ -1,7 +1,7 @@
 /* listen.c - implements listen.h. */
 #define _GNU_SOURCE /* accept4 */
 #include "net/listen.h"
-#include "answers.h"
+#include "answers/answers.h"
 #include "message.h"
 #include "net/client.h"
 #include "net/download.h"

@@ -1,6 +1,6 @@
 /* description.c - the volume, its look and the last picture's figures, as JSON
  * for all pages; see answers.h. */
-#include "answers.h"
+#include "answers/answers.h"
 #include "message.h"
 
 #include "commands/commands.h"
@@ -290,10 +290,12 @@ void answer_look(drawing *d, outbox *box) {
     answer_put(
         box, 0, MESSAGE_LOOK,
         json_pack(
-            "{s:s, s:s*, s:o*, s:f, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b, s:o, "
+            "{s:s, s:s*, s:o*, s:f, s:f, s:f, s:I, s:o, s:o, s:o, s:s, s:b, "
+            "s:o, "
             "s:o, s:o}",
-            "t", "look", "preset", look.name, "map", answer_colormap(&look), "legend", d->state.strip, "low", low, "high", high,
-            "count", (json_int_t)look.opacity_count, "opacity",
+            "t", "look", "preset", look.name, "map", answer_colormap(&look),
+            "legend", d->state.strip, "low", low, "high", high, "count",
+            (json_int_t)look.opacity_count, "opacity",
             points_of(look.opacities, look.opacity_count), "gradient",
             points_of(look.gradient_opacities, look.gradient_opacity_count),
             "strip", strip_of(transfer, low, high), "text",

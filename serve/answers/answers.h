@@ -46,6 +46,12 @@ int answer_measures(drawing *d, outbox *box, uint64_t client,
 int answer_probe(drawing *d, outbox *box, uint64_t client, const json_t *tree);
 void answer_no_probe(outbox *box, uint64_t client, const json_t *tree);
 
+/* --- thumbnails.c ---
+ *
+ * A preset or a colour map on the volume, as a small picture. */
+void answer_thumbnail(drawing *d, viewer_state *s, outbox *box, uint64_t client,
+                      json_t *tree);
+
 /* --- answers.c ---
  *
  * Sends a tree, which it frees. */

@@ -1,6 +1,6 @@
-/* measuring.c - answers what lies under a page's pointer, and what is measured; see
- * answers.h. */
-#include "answers.h"
+/* measuring.c - answers what lies under a page's pointer, and what is measured;
+ * see answers.h. */
+#include "answers/answers.h"
 
 #include "draw/pick.h"
 #include "draw/slices.h"
@@ -33,7 +33,7 @@ bool answer_read_spot(const json_t *tree, double *x, double *y) {
 
 /* {"what": "measures"}: what --stats lists, and the words that it is of. */
 int answer_measures(drawing *d, outbox *box, uint64_t client,
-                           const json_t *tree) {
+                    const json_t *tree) {
     (void)tree;
     answer_put(box, client, MESSAGE_PLAIN,
                json_pack("{s:s, s:s, s:o}", "t", "measures", "of",
@@ -56,8 +56,7 @@ void answer_no_probe(outbox *box, uint64_t client, const json_t *tree) {
 
 /* {"what": "probe", "n": 7, "at": [12, 30, 57]}: the value of that voxel; or
  * with x, y and size as above, the depth. */
-int answer_probe(drawing *d, outbox *box, uint64_t client,
-                        const json_t *tree) {
+int answer_probe(drawing *d, outbox *box, uint64_t client, const json_t *tree) {
     double x, y, depth = NAN;
     double size[2] = {d->state.view.width, d->state.view.height};
     int64_t at[3];
@@ -72,4 +71,3 @@ int answer_probe(drawing *d, outbox *box, uint64_t client,
     put_probe(box, client, tree, "depth", depth);
     return CONTINUE;
 }
-
