@@ -71,8 +71,8 @@ typedef struct request {
     snow_settings settings;
     const double *azimuths; /* all that are to fit */
     size_t azimuth_count;
-    bool fit, empty;         /* nothing is seen */
-    double shown; /* voxels that the looks show; below 0: as of the frame */
+    bool fit, empty; /* the latter: nothing is seen */
+    double shown;    /* voxels that the looks show; below 0: as of the frame */
     snow_image *image, *depth;
 } request;
 
@@ -153,8 +153,8 @@ static snow_status add_shown(request *r, const snow_volume *volume,
         return SNOW_STATUS_OK;
     const snow_status status = snow_transfer_sparse_ratio(
         transfer, volume, r->settings.threshold, &hidden);
-    r->shown += (1 - hidden) * (double)dims[0] * (double)dims[1] *
-                (double)dims[2];
+    r->shown +=
+        (1 - hidden) * (double)dims[0] * (double)dims[1] * (double)dims[2];
     return status;
 }
 
@@ -204,7 +204,7 @@ static PyObject *stats_of(const request *r) {
         counted ? llround(r->shown) : (long long)s->interesting;
     const double sparse =
         counted && s->voxels > 0
-            ? 1 - (double)interesting / (double)s->voxels
+            ? fmax(0, 1 - (double)interesting / (double)s->voxels)
             : s->sparse_ratio;
     return Py_BuildValue(
         "{sOsssssssssisLsLsdsd}", "empty", r->empty ? Py_True : Py_False,

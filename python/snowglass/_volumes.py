@@ -1045,9 +1045,11 @@ def _emptiness(mode: str, settings: Mapping[str, Any], stats: Mapping[str, Any]
                f"{settings.get('iso', 0):g} is in view; volume.statistics has the " \
                f"range of values"
     if mode == "over" and stats["interesting"] == 0:
-        return "the picture is empty: no voxel has an opacity above the threshold; " \
-               "volume.statistics has the range of values, opacity= sets which " \
-               "are visible"
+        threshold = settings.get("threshold") or 0
+        least = f"threshold={threshold:g}" if threshold else "0"
+        return f"the picture is empty: no voxel has an opacity above {least}; " \
+               f"volume.statistics has the range of values, opacity= sets which " \
+               f"are visible"
     return "the picture is empty: no visible voxel is in view; check target=, " \
            "position=, zoom= and clip="
 

@@ -86,7 +86,8 @@ class Looks(InFolder):
     def test_an_empty_picture_warns(self):
         volume = head()
         for answer, options in (
-                ("no voxel has an opacity", {"opacity": [(0, 0), (255, 0)]}),
+                ("no voxel has an opacity above 0;", {"opacity": [(0, 0), (255, 0)]}),
+                ("an opacity above threshold=255;", {"threshold": 255}),
                 ("no surface of value 999", {"mode": "iso", "iso": 999}),
                 ("no visible voxel is in view", {"target": (900, 0, 0), "fit": "volume"})):
             with self.assertWarnsRegex(sg.SnowglassWarning, answer) as caught:
@@ -95,6 +96,23 @@ class Looks(InFolder):
         with self.assertWarnsRegex(sg.SnowglassWarning, "all frames are empty"):
             volume.turntable("e_%d.png", frames=2, size=24, opacity=[(0, 0)])
         volume.turntable("f_%d.png", frames=2, size=24)  # warnings are errors
+
+    def test_why_a_picture_is_empty_does_not_hang_on_those_before(self):
+        values = numpy.arange(24 ** 3).reshape(24, 24, 24) % 200
+        for look in ({"clim": (1000, 2000)}, {"opacity": [(300, 0), (400, 1)]},
+                     {"opacity": [(199.2, 0), (199.8, 1)]}, {"threshold": 255}):
+            for kind in "uint8", "int16", "float32":
+                volume = sg.Volume(values.astype(kind))
+                self.assertGreater(volume.render(size=24).stats["interesting"], 0)
+                with self.assertWarnsRegex(sg.SnowglassWarning, "no voxel has an opacity"):
+                    image = volume.render(size=24, **look)
+                self.assertEqual(image.stats["interesting"], 0)
+                self.assertEqual(image.stats["sparse_ratio"], 1)
+                # Seen from afar the same voxels are there, out of view.
+                away = {"target": (900, 0, 0), "fit": "volume"}
+                with self.assertWarnsRegex(sg.SnowglassWarning, "no visible voxel is in"):
+                    there = volume.render(size=24, opacity=[(100.5, 0), (101, 1)], **away)
+                self.assertEqual(there.stats["interesting"], int((values > 100).sum()))
 
 
 class Movies(InFolder):
