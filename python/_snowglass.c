@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-PyObject *error_type, *warning_type;
 PyTypeObject *context_type, *volume_type, *transfer_type, *image_type;
 
 /* --- lists ---------------------------------------------------------------- */
@@ -121,16 +120,6 @@ static bool add_types(PyObject *module) {
     return context_type && transfer_type && volume_type && image_type;
 }
 
-static bool add_errors(PyObject *module) {
-    error_type =
-        PyErr_NewException("snowglass.Error", PyExc_RuntimeError, NULL);
-    warning_type = PyErr_NewException("snowglass.SnowglassWarning",
-                                      PyExc_UserWarning, NULL);
-    return error_type && warning_type &&
-           !PyModule_AddObjectRef(module, "Error", error_type) &&
-           !PyModule_AddObjectRef(module, "SnowglassWarning", warning_type);
-}
-
 static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT,
                                         "_snowglass",
                                         NULL,
@@ -144,7 +133,7 @@ static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT,
 PyMODINIT_FUNC PyInit__snowglass(void);
 PyMODINIT_FUNC PyInit__snowglass(void) {
     PyObject *m = PyModule_Create(&definition);
-    if (m && add_types(m) && add_errors(m) &&
+    if (m && add_types(m) && errors_add(m) &&
         !PyModule_AddFunctions(m, volume_functions) &&
         !PyModule_AddFunctions(m, image_functions))
         return m;

@@ -162,21 +162,6 @@ bool context_enter(context_object *c, PyObject *progress) {
     return true;
 }
 
-void context_set_error(snow_status status, const char *message) {
-    PyObject *text = message_text(message), *number = PyLong_FromLong(status);
-    PyObject *type = status == SNOW_STATUS_NO_MEMORY   ? PyExc_MemoryError
-                     : status == SNOW_STATUS_BAD_USAGE ? PyExc_ValueError
-                                                       : error_type;
-    PyObject *error =
-        text && number ? PyObject_CallFunction(type, "O", text) : NULL;
-    if (error && (type != error_type ||
-                  !PyObject_SetAttrString(error, "status", number)))
-        PyErr_SetObject(type, error);
-    Py_XDECREF(error);
-    Py_XDECREF(number);
-    Py_XDECREF(text);
-}
-
 /* As warnings of the line that called the package. */
 static bool warn_of(PyObject *texts) {
     PyObject *module = PyImport_ImportModule("snowglass._warnings");

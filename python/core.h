@@ -7,6 +7,7 @@
  *
  *   context.c  Context: a snow_context and its lock; every other object holds
  *              one
+ *   errors.c   exceptions of what the library answers
  *   records.c  records of the library from dictionaries
  *   messages.c messages of the library as Python's
  *   volume.c   Volume: a volume and the frame that draws it
@@ -80,6 +81,9 @@ void context_discard(context_object *c, free_fn *release, void *object);
 
 /* An exception with a text of the library. */
 void context_set_error(snow_status status, const char *message);
+
+/* Adds the classes of exceptions to the module; false with an exception. */
+bool errors_add(PyObject *module);
 
 /* The end of an object's dealloc. */
 void end_object(PyObject *self);

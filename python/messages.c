@@ -94,6 +94,7 @@ static size_t write_types(const char *from, char **to) {
 }
 
 PyObject *message_text(const char *message) {
+    static const char overwriting[] = "allow overwriting (-y)";
     /* "," becomes "), (", the longest of what is put in for its length */
     char *copy = malloc(4 * strlen(message) + 1), *to = copy, name[32];
     if (!copy)
@@ -104,6 +105,11 @@ PyObject *message_text(const char *message) {
         size_t length = from == message || strchr(" (", from[-1])
                             ? read_option(from, name)
                             : 0;
+        if (!length && strncmp(from, overwriting, sizeof overwriting - 1) == 0) {
+            to += sprintf(to, "give overwrite=True");
+            from += sizeof overwriting - 1;
+            continue;
+        }
         if (!length) {
             *to++ = *from++;
             continue;

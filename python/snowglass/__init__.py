@@ -19,12 +19,13 @@ from typing import Any
 from ._images import Difference, Image, compare
 from ._looks import Look
 from ._volumes import Step, Volume, open, render, series
-from ._snowglass import Error, SnowglassWarning
+from ._snowglass import Error, FileError, FileExistsError, FileNotFoundError, \
+    PermissionError, SnowglassWarning
 from . import _snowglass
 
 __version__: str = _snowglass.version()
-__all__ = ["Difference", "Error", "Image", "Look", "SnowglassWarning", "Step",
-           "Viewer", "Volume", "colormaps", "compare", "open", "phantoms",
+__all__ = ["Difference", "Error", "FileError", "Image", "Look", "SnowglassWarning",
+           "Step", "Viewer", "Volume", "colormaps", "compare", "open", "phantoms",
            "presets", "render", "series", "views"]
 
 

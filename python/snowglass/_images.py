@@ -86,7 +86,7 @@ class Image(_snowglass.Image):
              overwrite: bool = True, title: Optional[str] = None,
              progress: Progress = None) -> "Image":
         """Writes .png, .webp, .jpg, .npy, .pfm, .exr or .tif, whole or not at
-        all.  PNG, WebP and JPEG show letters and bars; the others hold the
+        all, over a file of that name unless overwrite=False.  PNG, WebP and JPEG show letters and bars; the others hold the
         pixels as they are.
 
         background    what PNG, WebP and JPEG are laid on: "auto" (dark; of
@@ -184,6 +184,10 @@ class Image(_snowglass.Image):
                             "depth=True; its rows are those of "
                             "numpy.asarray(image)")
         return iter((self, self.depth))
+
+    def __reduce__(self) -> Any:
+        raise TypeError("an Image cannot be pickled or copied: give numpy.array(image), or "
+                        "its recipe")
 
     def _is_opaque(self) -> bool:
         import numpy

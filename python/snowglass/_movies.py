@@ -202,8 +202,8 @@ class _Encoder:
         import shutil
         self.program = shutil.which("ffmpeg")
         if not self.program:
-            raise RuntimeError(f"{path}: movies need the program ffmpeg; "
-                               f"install it, or write turn_%04d.png")
+            _snowglass.fail(CANNOT_WRITE, f"{path}: movies need the program ffmpeg; "
+                                          f"install it, or write turn_%04d.png")
         _check_folder(path)
         self.path, self.suffix, self.fps = path, suffix, fps
         self.background = background
@@ -235,7 +235,7 @@ class _Encoder:
         if self.process.returncode:
             self._remove()
             said = " ".join(text.decode(errors="replace").split())
-            raise RuntimeError(f"{self.path}: ffmpeg failed: {said}")
+            _snowglass.fail(CANNOT_WRITE, f"{self.path}: ffmpeg failed: {said}")
         os.replace(self.partial, self.path)
 
     def abandon(self) -> None:

@@ -7,7 +7,7 @@ import operator
 import os
 import re
 from typing import TYPE_CHECKING, Any, Iterator, Literal, Mapping, Optional, \
-    Sequence, Union, Unpack
+    Sequence, TypeVar, Union, Unpack
 
 from . import _arrays, _channels, _checks, _colormaps, _first, _movies, _overlays, \
     _recipes, _snowglass
@@ -20,6 +20,9 @@ from ._warnings import warn
 
 if TYPE_CHECKING:
     import numpy.typing
+
+
+V = TypeVar("V", bound="Volume")
 
 
 class Volume(_snowglass.Volume):
@@ -37,7 +40,7 @@ class Volume(_snowglass.Volume):
         spacing as those of a NetCDF file do (the mean step, where they are
         uneven), and whose units stand over the legend.
 
-    spacing     lengths of a voxel along x, y, z
+    spacing     lengths of a voxel along x, y, z, or one number for all
     affine      4x4 matrix from indices x, y, z to the world, instead
     axes        what the array's dimensions are: "zyx", "xyz", ...
     unit        of lengths: "mm", "um", ...
@@ -65,7 +68,8 @@ class Volume(_snowglass.Volume):
               range and an opacity.  Arrays, statistics, slice_values, project and
               save are those of one channel, the first.
 
-    A Volume may be used by several threads; they take turns.
+    A Volume may be used by several threads; they take turns.  `with` closes it at
+    the end.
     """
     _axes: str = "zyx"                       # of the array
     _order: tuple[int, ...] = (0, 1, 2)      # of its dimensions in memory
@@ -79,7 +83,8 @@ class Volume(_snowglass.Volume):
         if isinstance(source, (str, bytes, os.PathLike)):
             return cls._open(os.fsdecode(source), memory, progress, options)
         if memory:
-            raise TypeError("memory counts for files only")
+            raise TypeError("memory counts for files only: an array is in memory already; "
+                            "save() it as .nrrd, and open that with memory=")
         _arrays.check_options(options)
         one = _arrays.wrap(source, **options)
         made = _snowglass.wrap(cls, one.array, one.order, one.matrix, one.slope,
@@ -97,7 +102,8 @@ class Volume(_snowglass.Volume):
 
     @takes(Source)
     def __init__(self, source: Any, **options: Unpack[Source]) -> None:
-        pass
+        """Opens a file, or wraps an array; `help(snowglass.Volume)` describes the
+        options."""
 
     #: The file and how it was opened, as keys of a recipe; None: an array.
     _source: Optional[Mapping[str, Any]] = None
@@ -186,6 +192,21 @@ class Volume(_snowglass.Volume):
         self._close()
         if self._mixed is not None:
             self._mixed.close()
+
+    def __enter__(self: V) -> V:
+        return self
+
+    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
+        """Closes it; of arrays in use nothing is said behind another exception."""
+        try:
+            self.close()
+        except BufferError:
+            if kind is None:
+                raise
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a Volume cannot be pickled or copied: open the file or wrap the "
+                        "array where it is used")
 
     # --- what it is ---
 
@@ -322,7 +343,8 @@ class Volume(_snowglass.Volume):
 
     def save(self, path: Path, *, overwrite: bool = True,
              progress: Progress = None) -> "Volume":
-        """Writes .nrrd, .nii, .nii.gz, .mha, .npy or .raw, x fastest."""
+        """Writes .nrrd, .nii, .nii.gz, .mha, .npy or .raw, x fastest, over a file
+        of that name unless overwrite=False."""
         import numpy
         volume, info = self, self.info
         if info["dims"] != self._info["dims"] or \
@@ -836,7 +858,8 @@ class Volume(_snowglass.Volume):
                      kernel: Optional[str] = None, threads: int = 0
                      ) -> "numpy.typing.NDArray[Any]":
         """The same in data units: float32 of shape (height, width), NaN where
-        there is no value."""
+        there is no value.  Row 0 is on top, so that of an array without a patient
+        `volume.slice_values("z", n)[::-1]` is array[n]."""
         import numpy
         along, index, _ = self._find_slice(self._axis_name(axis), at)
         return numpy.asarray(self._draw_slice(
@@ -957,6 +980,7 @@ class Volume(_snowglass.Volume):
         return Viewer(self, look, height=height, **options)
 
 
+CANNOT_READ = 3  # of the statuses of the library
 #: Strengths of the lights, and the exponent of the last: the parts of `material`.
 MATERIAL = ("ambient", "diffuse", "specular", "shininess")
 #: Views by the axes of the picture, as of PyVista.
@@ -1248,7 +1272,7 @@ def _files_of(pattern: str) -> list[tuple[int, str]]:
             if os.path.basename(path) == each:
                 found.append((index, path))
     if not found:
-        raise FileNotFoundError(f"{pattern}: there is no such file")
+        _snowglass.fail(CANNOT_READ, f"{pattern}: there is no such file")
     return sorted(found)
 
 
@@ -1272,5 +1296,5 @@ def _files_like(pattern: str) -> list[tuple[int, str]]:
                  (each[0] != "." or name[0] == ".")]
     found = sorted(paths, key=order)
     if not found:
-        raise FileNotFoundError(f"{pattern}: there is no such file")
+        _snowglass.fail(CANNOT_READ, f"{pattern}: there is no such file")
     return list(enumerate(found))

@@ -10,7 +10,8 @@ In a test:
         image = snowglass.render("head.nii.gz")
         snowglass_compare(image, "head.png", tolerance=2 / 255)
 
-Pictures are compared with those in the folder `baseline` beside the test.
+Pictures are compared with those in the folder `baseline` beside the test;
+`tolerance` is the largest difference of a channel, 0 to 1, that passes.
 `pytest --snowglass-update` writes them anew: look at them before you commit.
 A picture that differs is kept beside the baseline as NAME.failed.png.
 """
@@ -21,6 +22,7 @@ from typing import Any, Callable
 
 import pytest
 
+from . import _checks
 from ._images import Image, compare
 
 
@@ -35,9 +37,11 @@ def snowglass_compare(request: Any) -> Callable[..., None]:
     folder = os.path.join(os.path.dirname(str(request.path)), "baseline")
 
     def check(image: Image, name: str, tolerance: float = 2 / 255) -> None:
+        if not isinstance(image, Image):
+            raise _checks.fault("image", "a snowglass.Image", image)
         baseline = os.path.join(folder, name)
         if request.config.getoption("--snowglass-update"):
-            os.makedirs(folder, exist_ok=True)
+            os.makedirs(os.path.dirname(baseline), exist_ok=True)
             image.save(baseline)
             return
         if not os.path.exists(baseline):

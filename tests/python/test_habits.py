@@ -1,5 +1,7 @@
 """What users of matplotlib, PyVista and the command line are used to."""
+import copy
 import os
+import pickle
 import subprocess
 import sys
 import unittest
@@ -143,6 +145,94 @@ class Movies(InFolder):
         self.assertGreater(len(self.bytes_of("t_2.png")), 100)
         self.assertGreater(len(self.bytes_of("t.webp")), 100)
         self.assertEqual([each for each in os.listdir() if "part" in each], [])
+
+
+class Faults(InFolder):
+    def test_faults_of_files_are_those_of_python_too(self):
+        head().save("there.nrrd")
+        os.symlink("nowhere.nrrd", "link.nrrd")
+        os.mkdir("folder.png")
+        image = head().render(size=24).save("there.png")
+        for kind, status, cause in (
+                (FileNotFoundError, 3, lambda: sg.open("missing.nrrd")),
+                (FileNotFoundError, 3, lambda: sg.open("link.nrrd")),
+                (FileNotFoundError, 3, lambda: sg.open("there.nrrd", mask="missing.nii")),
+                (FileNotFoundError, 3, lambda: sg.Image.load("missing.png")),
+                (FileNotFoundError, 3, lambda: next(sg.series("missing_%d.nrrd"))),
+                (FileNotFoundError, 3, lambda: next(sg.series("missing_*.nrrd"))),
+                (FileNotFoundError, 4, lambda: image.save("missing/a.png")),
+                (FileNotFoundError, 4, lambda: head().turntable("missing/a.webp")),
+                (FileExistsError, 4, lambda: image.save("there.png", overwrite=False)),
+                (FileExistsError, 4, lambda: head().save("there.nrrd", overwrite=False)),
+                (FileExistsError, 4, lambda: head().turntable("there.png")),
+                (OSError, 4, lambda: image.save("folder.png"))):
+            with self.assertRaises(kind) as caught:
+                cause()
+            error = caught.exception
+            self.assertIsInstance(error, sg.FileError)
+            self.assertIsInstance(error, sg.Error)
+            self.assertEqual(error.status, status)
+            if kind is not OSError:
+                with self.assertRaises(kind) as known:
+                    os.link("there.png", "there.nrrd") if kind is FileExistsError \
+                        else os.stat("missing.png")
+                self.assertEqual(error.errno, known.exception.errno)
+            again = pickle.loads(pickle.dumps(error))  # as a pool of processes does
+            self.assertEqual((type(again), str(again)), (type(error), str(error)))
+        with open("text.nrrd", "w", encoding="ascii") as file:
+            file.write("nothing")
+        for path in "text.nrrd", "there.png/there.nrrd":
+            with self.assertRaises(sg.Error) as caught:
+                sg.open(path)
+            self.assertNotIsInstance(caught.exception, FileNotFoundError)
+        with self.assertRaisesRegex(sg.Error, "give overwrite=True$"):
+            image.save("there.png", overwrite=False)
+
+    def test_what_may_not_be_read_is_a_matter_of_permissions(self):
+        with self.assertRaises(PermissionError) as caught:  # root may read all files
+            sg._snowglass.fail(3, f"a.nrrd: cannot be opened: {os.strerror(13)}; ask")
+        self.assertIsInstance(caught.exception, sg.FileError)
+        with self.assertRaises(ValueError):
+            sg._snowglass.fail(2, f"a.nrrd: cannot be opened: {os.strerror(13)}; ask")
+
+    def test_with_closes(self):
+        with head() as volume:
+            volume.render(size=24)
+        with self.assertRaisesRegex(ValueError, "closed"):
+            volume.render(size=24)
+        with self.assertRaisesRegex(BufferError, "in use"):
+            with head() as volume:
+                voxels = numpy.asarray(volume)
+        with self.assertRaises(ZeroDivisionError):
+            with head() as volume:
+                voxels = numpy.asarray(volume)
+                raise ZeroDivisionError
+        self.assertEqual(voxels.shape, (24, 24, 24))
+
+    def test_what_is_in_memory_here_is_not_pickled(self):
+        for each in head(), head().render(size=24):
+            for copies in pickle.dumps, copy.copy, copy.deepcopy:
+                with self.assertRaisesRegex(TypeError, "cannot be pickled or copied: "):
+                    copies(each)
+        self.assertEqual(pickle.loads(pickle.dumps(sg.Look(preset="mr-default"))),
+                         sg.Look(preset="mr-default"))
+
+    def test_slices_have_y_up(self):
+        array = numpy.arange(3 * 5 * 7, dtype=numpy.int16).reshape(3, 5, 7)
+        volume = sg.Volume(array)
+        for given, expected in (
+                (volume.slice_values("z", 1), array[1]),
+                (volume.slice_values("y", 2), array[:, 2]),
+                (volume.slice_values("x", 3), array[:, :, 3])):
+            numpy.testing.assert_array_equal(given[::-1], expected)
+
+    def test_memory_is_that_of_files(self):
+        with self.assertRaisesRegex(TypeError, "memory counts for files only: .*memory="):
+            sg.Volume(RAMP, memory=1 << 20)
+
+    def test_what_help_says_first(self):
+        self.assertIn("wraps an array", sg.Volume.__init__.__doc__)
+        self.assertEqual(sg.Volume(RAMP, spacing=2).spacing, (2, 2, 2))
 
 
 class Progress(InFolder):

@@ -6,12 +6,16 @@ import tempfile
 import unittest
 
 TEST = """
+import pytest
 import snowglass as sg
 
 def test_picture(snowglass_compare):
     image = sg.Volume("phantom:head", dims=(32, 32, 32)).render(size=48,
                                                                 azimuth={0})
     snowglass_compare(image, "head.png")
+    snowglass_compare(image, "deeper/folder/head.png")
+    with pytest.raises(TypeError, match="image: give a snowglass.Image, not an array"):
+        snowglass_compare(image.to_rgb(), "head.png")
 """
 
 
