@@ -136,3 +136,10 @@ install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT snowglass_doc
         REGEX "/examples/(insitu/)?CMakeLists[.]txt$" EXCLUDE
         PATTERN "run.cmake" EXCLUDE)
+
+# --- and away -----------------------------------------------------------------
+
+if(PROJECT_SOURCE_DIR STREQUAL CMAKE_SOURCE_DIR)
+  add_custom_target(uninstall COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR}
+                    -P ${PROJECT_SOURCE_DIR}/cmake/uninstall.cmake)
+endif()

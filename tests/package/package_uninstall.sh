@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# tests/package/package_uninstall.sh - `script TOOL BUILD SOURCE`: what is removed
+# after cmake --install, and what is not.
+. "$(dirname "$0")/../support/shell.sh"
+BUILD=$2 SOURCE=$3
+place=prefix/lib/python3/site-packages
+mkdir -p $place/snowglass/web $place/snowglass/__pycache__ prefix/share/doc/snowglass \
+    prefix/bin build
+
+# As an installed package is after it was used, beside another one.
+for file in bin/snowglass share/doc/snowglass/LICENSE ${place#prefix/}/snowglass/__init__.py \
+    ${place#prefix/}/snowglass/_arrays.py "${place#prefix/}/snowglass/web/a page.js"; do
+    echo "x = 1" >"prefix/$file"
+    echo "$WORK/prefix/$file"
+done >build/install_manifest.txt
+echo "x = 2" >$place/other.py
+PYTHONDONTWRITEBYTECODE='' python3 -m compileall -q $place || exit 1
+check "bytecode lies beside the modules" [ -n "$(find $place/snowglass -name '*.pyc')" ]
+cp -r prefix old
+
+remove() { cmake -DBUILD="$WORK/$1" -P "$SOURCE/cmake/uninstall.cmake"; }
+run 0 "it is uninstalled" remove build
+check "nothing of it is left" [ -z "$(find prefix -name '*snowglass*')" ]
+(cd $place && python3 -B -c 'import snowglass') 2>said
+check "Python does not find it" grep -q "ModuleNotFoundError" said
+(cd $place && python3 -B -c 'import other')
+check "another package stays" [ $? = 0 ]
+check "folders of others stay, though they are empty" [ -d prefix/bin ]
+check "bytecode of others stays" [ -n "$(find $place/__pycache__ -name 'other.*.pyc')" ]
+
+# With a file of somebody else in its folder, below another root.
+mkdir root && mkdir -p "root$WORK" && mv old "root$WORK/prefix"
+touch "root$WORK/$place/snowglass/notes.txt"
+DESTDIR=$WORK/root run 0 "it is uninstalled below another root" remove build
+check "what was not installed stays" [ -e "root$WORK/$place/snowglass/notes.txt" ]
+check "and nothing else of it" [ "$(find root -path '*/snowglass/*')" = \
+    "root$WORK/$place/snowglass/notes.txt" ]
+
+mkdir empty
+run 1 "a folder that installed nothing is refused" remove empty
+check "with the reason" grep -q "nothing was" "$ERR"
+cmake --build "$BUILD" --target help >targets
+check "the build has it as a target" grep -q "uninstall" targets
+finish
