@@ -78,14 +78,15 @@ void context_set_error(snow_status status, const char *message) {
 }
 
 /* Adds snowglass.NAME, which is both; NULL with an exception. */
-static PyObject *add_error(PyObject *module, const char *name, PyObject *ours,
-                           PyObject *theirs) {
+static PyObject *add_error(PyObject *module, const char *name, const char *doc,
+                           PyObject *ours, PyObject *theirs) {
     char full[64];
     snprintf(full, sizeof full, "snowglass.%s", name);
     PyObject *bases = theirs ? PyTuple_Pack(2, ours, theirs) : NULL;
     PyObject *type =
-        theirs && !bases ? NULL
-                         : PyErr_NewException(full, theirs ? bases : ours, NULL);
+        theirs && !bases
+            ? NULL
+            : PyErr_NewExceptionWithDoc(full, doc, theirs ? bases : ours, NULL);
     Py_XDECREF(bases);
     if (type && PyModule_AddObjectRef(module, name, type))
         Py_CLEAR(type);
@@ -93,15 +94,23 @@ static PyObject *add_error(PyObject *module, const char *name, PyObject *ours,
 }
 
 bool errors_add(PyObject *module) {
-    error_type = add_error(module, "Error", PyExc_RuntimeError, NULL);
-    warning_type =
-        add_error(module, "SnowglassWarning", PyExc_UserWarning, NULL);
+    error_type = add_error(
+        module, "Error",
+        "What is neither of arguments nor of memory; status is the exit status "
+        "of the command line.",
+        PyExc_RuntimeError, NULL);
+    warning_type = add_error(module, "SnowglassWarning",
+                             "All warnings of the package.", PyExc_UserWarning,
+                             NULL);
     if (!error_type || !warning_type)
         return false;
-    file_error_type = add_error(module, "FileError", error_type, PyExc_OSError);
+    file_error_type =
+        add_error(module, "FileError",
+                  "A file is missing, or cannot be read or written; also OSError.",
+                  error_type, PyExc_OSError);
     for (size_t n = 0; n < FAULTS && file_error_type; n++) {
-        faults[n].type = add_error(module, faults[n].name, file_error_type,
-                                   *faults[n].base);
+        faults[n].type = add_error(module, faults[n].name, "Also Python's own.",
+                                   file_error_type, *faults[n].base);
         if (!faults[n].type)
             return false;
     }

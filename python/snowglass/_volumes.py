@@ -459,9 +459,9 @@ class Volume(_snowglass.Volume):
         deterministic and isa are those of the command line, as `snowglass help`
         describes them; what is not given has its default.
 
-        A picture in which nothing is seen comes with a warning.  Raises ValueError
-        (a value out of its range, an unknown name), MemoryError, snowglass.Error,
-        KeyboardInterrupt within 0.1 s.
+        A picture in which nothing is seen comes with a warning.  Raises TypeError (an
+        argument of a wrong kind, or none), ValueError (a value out of its range, an
+        unknown name), MemoryError, snowglass.Error, KeyboardInterrupt within 0.1 s.
         """
         return self._picture(look, **_given(options))
 

@@ -1,5 +1,6 @@
 """What users of matplotlib, PyVista and the command line are used to."""
 import copy
+import gc
 import os
 import pickle
 import subprocess
@@ -9,7 +10,7 @@ import unittest
 import numpy
 
 import snowglass as sg
-from beside import InFolder
+from beside import InFolder, plain
 
 try:
     import matplotlib
@@ -226,12 +227,48 @@ class Faults(InFolder):
                 (volume.slice_values("x", 3), array[:, :, 3])):
             numpy.testing.assert_array_equal(given[::-1], expected)
 
+    def test_pixels_can_be_written_and_outlive_their_picture(self):
+        volume = head()
+        pixels = numpy.asarray(volume.render(size=24))
+        volume.close()
+        expected = pixels.copy()
+        gc.collect()
+        numpy.testing.assert_array_equal(pixels, expected)
+        image = head().render(size=24)
+        numpy.asarray(image)[3, 5] = 1
+        image.save("changed.npy")
+        self.assertEqual(numpy.load("changed.npy")[3, 5].tolist(), [1] * 4)
+
+    @plain
+    def test_a_child_draws_the_volumes_of_its_parent(self):
+        volume = head()
+        expected = numpy.asarray(volume.render(size=48, threads=2))
+        child = os.fork()
+        if child == 0:
+            status = 1
+            try:
+                drawn = numpy.asarray(volume.render(size=48, threads=2))
+                status = int(not (drawn == expected).all())
+            finally:
+                os._exit(status)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+
+    def test_a_plain_array_is_seen_from_its_last_slice_with_y_up(self):
+        array = numpy.zeros((12, 12, 12), numpy.uint8)
+        array[11, 9:, 9:], array[0, :3, :3] = 200, 100  # near, far
+        seen = sg.Volume(array).render(size=24, mode="mip", clim=(0, 200), fit="volume")
+        bright = numpy.argwhere(numpy.asarray(seen)[..., 0] > 0.8)
+        self.assertTrue((bright[:, 0] < 12).all() and (bright[:, 1] >= 12).all())
+        self.same_picture(seen, sg.Volume(array).render(
+            size=24, mode="mip", clim=(0, 200), fit="volume", view="+z"))
+
     def test_memory_is_that_of_files(self):
         with self.assertRaisesRegex(TypeError, "memory counts for files only: .*memory="):
             sg.Volume(RAMP, memory=1 << 20)
 
     def test_what_help_says_first(self):
         self.assertIn("wraps an array", sg.Volume.__init__.__doc__)
+        self.assertIn("exit status", sg.Error.__doc__)
         self.assertEqual(sg.Volume(RAMP, spacing=2).spacing, (2, 2, 2))
 
 

@@ -40,7 +40,7 @@ REASONS = [
     (r".*", r"pip install [.]", "needs scikit-build-core"),
     (r".*", r"mpirun\.mpich", "needs MPICH; the package is of Open MPI"),
     (r"dicom\.md", r"SUV = ", "a formula"),
-    (r"install\.md", r"--target uninstall|apt-get install", "removes or installs packages"),
+    (r"(install|python)\.md", r"--target uninstall|apt-get install", "removes or installs packages"),
     (r"movies\.md", r".*--as rgb24.*\|$", "a pipe of two lines, which tests of movies run"),
     (r"looks\.md", r"light-grey 173", "what the tool prints"),
     (r"usage\.md", r"\(0008,0060\)", "what the tool prints"),
