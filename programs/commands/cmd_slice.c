@@ -82,10 +82,24 @@ static void describe_place(const slice_work *w, char *out, size_t size) {
                  slice_position(w, (double)first->index), unit);
 }
 
+/* "; maximum of 5 slices", or "". */
+static void describe_slab(const slice_work *w, char *out, size_t size) {
+    const int axis = w->places[0].axis;
+    const slab *s = &w->slabs[axis];
+    snprintf(out, size, "; ");
+    if (s->half)
+        slab_describe(s,
+                      slab_around(s, &w->whole, axis, w->places[0].index).count,
+                      out + 2, size - 2);
+    else
+        *out = 0;
+}
+
 static void report(const slice_work *w) {
-    char volume[256], place[256], colors[512];
+    char volume[256], place[256], colors[512], thick[64];
     describe_volume(&w->whole, volume, sizeof volume);
     describe_place(w, place, sizeof place);
+    describe_slab(w, thick, sizeof thick);
     slice_describe_colors(w, colors, sizeof colors);
     config_note_slice(&w->opts, w->channels.list.count ? NULL : w->transfer,
                       w->kind == SLICE_ORTHO ? NULL : slice_axis_name(w),
@@ -96,9 +110,9 @@ static void report(const slice_work *w) {
     annotations_report(&w->opts);
     if (w->opts.verbosity < 0)
         return;
-    say("%s: %s; %s; %s; %dx%d pixels%s%s", name_of_input(w->path), volume,
-        place, colors, w->size[0], w->size[1], w->opts.named ? "; to " : "",
-        w->opts.named ? w->opts.output : "");
+    say("%s: %s; %s%s; %s; %dx%d pixels%s%s", name_of_input(w->path), volume,
+        place, thick, colors, w->size[0], w->size[1],
+        w->opts.named ? "; to " : "", w->opts.named ? w->opts.output : "");
     measures_report(w->measures);
     if (picture_is_empty(w->image))
         say("note: the picture is empty: the slice has no finite value, or "

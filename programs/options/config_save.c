@@ -91,6 +91,7 @@ static void fill_recipe(const options *opts, const verb_row *verb,
     out->verb = verb->name;
     out->version = snow_version();
     out->grid = opts->grid;
+    out->slab = opts->thickness;
     out->ortho = opts->ortho;
     if (verb->bit == VERB_TURNTABLE ||
         (verb->bit == VERB_SLICE && options_given(opts, "frames")))

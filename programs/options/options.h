@@ -137,6 +137,7 @@ typedef struct options {
 
     const char *axis, *at;  /* of a slice; NULL: not given */
     const char *grid;       /* of slices; NULL: not given */
+    const char *thickness;  /* of slices (--slab); NULL: not given */
     bool ortho;             /* slices across all three axes */
     listen_value listen;    /* of the viewer */
     const char *allow_host; /* names, separated by commas; NULL: none */

@@ -11,6 +11,7 @@
 #include "picture/channels.h"
 #include "picture/layers.h"
 #include "picture/render_stats.h"
+#include "slice/slab.h"
 
 typedef enum slice_kind {
     SLICE_ONE,
@@ -30,6 +31,8 @@ typedef struct slice_work {
     double point[3];        /* of SLICE_ORTHO, in units of the axes */
     snow_slice_place *places;
     int64_t count;
+    slab slabs[3]; /* across each axis of the grid */
+    int64_t first; /* of SLICE_ONE: the slice that its volume begins with */
     int size[2];          /* of the picture, or of a frame */
     double strip;         /* of it, that is left to a legend */
     snow_volume *volume;  /* the slice, or all of them */

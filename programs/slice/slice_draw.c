@@ -14,14 +14,14 @@
 
 /* --- one slice ------------------------------------------------------------ */
 
-/* A slice that was read alone is number 0 of its volume, in whose size the zoom
- * of the view counts. */
+/* A slice that was read alone, or with those around it, is counted in its
+ * volume, in whose size the zoom of the view counts. */
 static snow_status find_view(slice_work *w, int64_t part, snow_view *view,
                              int64_t *index) {
     static const char *const axes[] = {"x", "y", "z"};
     int axis;
     *view = w->places[part].view;
-    *index = w->kind == SLICE_ONE ? 0 : w->places[part].index;
+    *index = w->places[part].index - w->first;
     if (w->kind != SLICE_ONE)
         return SNOW_STATUS_OK;
     view->width = (int)w->opts.size[0];
@@ -35,14 +35,49 @@ static snow_status find_view(slice_work *w, int64_t part, snow_view *view,
     return status;
 }
 
-static snow_status draw(slice_work *w, int64_t index, const snow_view *view,
-                        snow_image **out) {
+/* The slice of each channel, in colours, or of the first one in numbers. */
+static snow_status draw_values(slice_work *w, snow_volume *const *volumes,
+                               int64_t index, const snow_view *view,
+                               snow_image **image) {
+    channel_set channels = w->channels;
+    snow_status status = snow_slice_render(volumes[0], index, w->transfer, view,
+                                           &w->settings, image);
+    if (status != SNOW_STATUS_OK || !w->transfer || !channels.list.count)
+        return status;
+    memcpy(channels.volumes, volumes, sizeof channels.volumes);
+    return channels_add_slices(&channels, w->context, index, view, &w->settings,
+                               image);
+}
+
+static snow_status draw_slab(slice_work *w, int axis, int64_t index,
+                             snow_volume *const *volumes, const snow_view *view,
+                             snow_image **image) {
+    const int count =
+        w->transfer && w->channels.list.count ? w->channels.list.count : 1;
+    slab_volumes made;
+    snow_view seen;
+    snow_status status = slab_project(w->context, &w->slabs[axis], volumes,
+                                      count, axis, index, &made);
+    if (status != SNOW_STATUS_OK)
+        return status;
+    status = slab_see(w->context, w->volume, &made, axis, view, &seen);
+    if (status == SNOW_STATUS_OK)
+        status = draw_values(w, made.volumes, 0, &seen, image);
+    slab_free(&made);
+    return status;
+}
+
+/* A slab has the overlay of its middle slice. */
+static snow_status draw(slice_work *w, int64_t part, int64_t index,
+                        const snow_view *view, snow_image **out) {
+    const int axis = w->places[part].axis;
+    snow_volume *volumes[SNOW_CHANNELS_MAX];
     snow_image *image = NULL;
-    snow_status status = snow_slice_render(w->volume, index, w->transfer, view,
-                                           &w->settings, &image);
-    if (status == SNOW_STATUS_OK && w->transfer && w->channels.list.count)
-        status = channels_add_slices(&w->channels, w->context, index, view,
-                                     &w->settings, &image);
+    memcpy(volumes, w->channels.volumes, sizeof volumes);
+    volumes[0] = w->volume;
+    snow_status status = w->slabs[axis].half
+                             ? draw_slab(w, axis, index, volumes, view, &image)
+                             : draw_values(w, volumes, index, view, &image);
     if (status == SNOW_STATUS_OK)
         status = layers_lay_slice(&w->opts, &w->layers, index, view,
                                   &w->settings, w->context, &image);
@@ -81,7 +116,8 @@ static snow_status draw_from_file(slice_work *w, int64_t part,
     snow_status status =
         done == CONTINUE ? find_view_alone(w, alone, &view) : (snow_status)done;
     if (status == SNOW_STATUS_OK)
-        status = draw(alone, 0, &view, out);
+        status =
+            draw(alone, 0, alone->places[0].index - alone->first, &view, out);
     slice_close_alone(alone);
     free(alone);
     return status;
@@ -95,7 +131,7 @@ snow_status slice_draw_part(slice_work *w, int64_t part, snow_image **out) {
         return draw_from_file(w, part, out);
     snow_status status = find_view(w, part, &view, &index);
     if (status == SNOW_STATUS_OK)
-        status = draw(w, index, &view, out);
+        status = draw(w, part, index, &view, out);
     w->frame = seconds_now() - begin;
     return status;
 }

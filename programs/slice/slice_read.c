@@ -17,10 +17,14 @@ bool slice_has_colors(const slice_work *w) {
            strcmp(w->opts.output, "-") == 0;
 }
 
+/* With the slices around it that a slab has. */
 static void crop_to_slice(slice_work *w) {
     int64_t *crop = w->opts.crop[w->axis];
-    crop[0] += w->places[0].index;
-    crop[1] = crop[0] + 1;
+    const slab_slices slices =
+        slab_around(&w->slabs[w->axis], &w->whole, w->axis, w->places[0].index);
+    w->first = slices.first;
+    crop[0] += slices.first;
+    crop[1] = crop[0] + slices.count;
 }
 
 /* The slice in the place of the whole, as a crop would have read it. */
@@ -76,11 +80,15 @@ static int inspect_whole(slice_work *w) {
 
 int slice_inspect(slice_work *w) {
     int done = inspect_whole(w);
+    for (int k = 0; k < 3 && done == CONTINUE; k++)
+        done = slab_read(w->opts.thickness, &w->whole, k, &w->slabs[k]);
     if (done == CONTINUE)
         done = slice_find(w);
     snow_volume_info held = w->whole; /* in memory */
-    if (w->kind == SLICE_ONE)
-        held.dims[w->axis] = 1;
+    if (w->kind == SLICE_ONE && done == CONTINUE)
+        held.dims[w->axis] =
+            slab_around(&w->slabs[w->axis], &held, w->axis, w->places[0].index)
+                .count;
     if (done == CONTINUE)
         done = channels_choose(&w->opts, &held,
                                slice_has_colors(w) || w->opts.show
@@ -123,7 +131,8 @@ static int open_several(slice_work *w) {
 
 static int read_volume(slice_work *w) {
     if (w->volume)
-        return w->kind == SLICE_ONE ? cut_slice(w) : CONTINUE;
+        return w->kind == SLICE_ONE && !w->slabs[w->axis].half ? cut_slice(w)
+                                                               : CONTINUE;
     if (w->kind == SLICE_ONE)
         crop_to_slice(w);
     w->opts.mixes = true;
@@ -248,7 +257,7 @@ int slice_measure(slice_work *w) {
     snow_volume_info whole = w->whole;
     if (w->kind == SLICE_ONE && own.measure) { /* a crop, counted in all */
         int64_t *crop = own.crop[w->axis];
-        crop[0] -= w->places[0].index;
+        crop[0] -= w->first;
         crop[1] = crop[0] + w->whole.dims[w->axis];
     }
     annotations_find_unit(&own, w->volume, false, &whole);
@@ -264,6 +273,8 @@ int slice_read(slice_work *w) {
     w->times.read = seconds_now() - begin;
     if (done == CONTINUE && slice_has_colors(w))
         done = slice_open_colors(w);
+    if (done == CONTINUE)
+        done = slab_check(&w->slabs[w->axis], w->transfer);
     if (done == CONTINUE)
         done = slice_spread(w);
     if (done == CONTINUE)

@@ -166,6 +166,7 @@ const recipe_key recipe_keys[] = {
     TEXT("axis", axis),
     TEXT("at", at),
     TEXT("grid", grid),
+    TEXT("slab", slab),
     MADE("ortho", flag, ortho, 0, 0, 0),
     TEXT("verb", verb),
     TEXT("version", version),

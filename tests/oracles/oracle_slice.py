@@ -5,6 +5,7 @@ missing, looks, labels and oblique grids.
 import json
 import os
 import struct
+import warnings
 
 import oracle
 from oracle import np
@@ -175,6 +176,43 @@ check("holes", is_scaled(got, flat.astype(float), (0.75, 1.0), 12, 19))
 got = values(path, "--at", "6", "-s", "100x90")
 check("holes, enlarged",
       is_scaled(got, flat.astype(float), (0.75, 1.0), 100, 90))
+
+# A slab is the maximum, mean or minimum of the slices within half of its
+# thickness, of those that there are.
+FOLDED = {"max": np.nanmax, "mean": np.nanmean, "min": np.nanmin}
+real = np.where(np.isfinite(holes), holes, np.nan).astype(float)
+for path, whole in ((nifti("a.nii", VOXELS, MATRIX), VOXELS.astype(float)),
+                    (nifti("full.nii", holes, MATRIX, 16), real)):
+    for world, name in enumerate(PATIENT):
+        for kind, fold in FOLDED.items():
+            for index, thickness, half in ((5, "7.6mm", 2), (1, "6mm", 2),
+                                           (4, "5.9mm", 1), (3, "5", 2),
+                                           (2, "1mm", 0), (6, "1e9mm", 99)):
+                part = np.take(whole, range(max(0, index - half), min(
+                    whole.shape[world], index + half + 1)), world)
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")  # all NaN
+                    flat = fold(part, world, keepdims=True)
+                told = f"{name} {index} of {path}, {thickness}:{kind}"
+                check(told, near(values(
+                    path, "--axis", name, "--at", str(index), "--slab",
+                    f"{thickness}:{kind}"), plane(flat, world, 0), 0.0005))
+check("a slab is a maximum", np.array_equal(
+    values("a.nii", "--slab", "3mm", "--at", "5"),
+    values("a.nii", "--slab", "3mm:max", "--at", "5")))
+oracle.tool("slice", "-", "-o", "out.npy", "-y", "-q", "--at", "4", "--slab",
+            "3mm:min", input=oracle.got("a.nii"), text=False)
+check("a slab of a pipe", np.array_equal(
+    np.load("out.npy"), plane(VOXELS[:, :, 3:6].min(2, keepdims=True), 2, 0)))
+oracle.tool("slice", "a.nii", "-o", "s_%d.npy", "-y", "-q", "--at", "2:5",
+            "--slab", "3mm:mean")
+check("slabs of a series", all(near(np.load(f"s_{n}.npy"), plane(
+    VOXELS[:, :, n + 1:n + 4].mean(2, keepdims=True), 2, 0), 0.0005)
+    for n in range(3)))
+for wrong in ("3in", "0mm", "-3mm", "3mm:sum", "nan", "mm", ""):
+    done = run("a.nii", "--slab", wrong)
+    check(f"no slab of {wrong!r}", done.returncode == 2 and
+          "--slab" in done.stderr)
 
 # A grid that no axis of the world follows: its own slice, seen the nearest way.
 oblique = MATRIX.copy()
