@@ -130,6 +130,37 @@ export function turned(recipe, dx, dy, side) {
         elevation: round(Math.max(-90, Math.min(90, elevation)))};
 }
 
+/** The angles that turn the base of a recipe to these directions.
+ * @param {Keys} recipe
+ * @param {Info} info
+ * @param {{right: Vector, up: Vector, back: Vector}} to
+ * @returns {Keys} */
+function anglesOf(recipe, info, {right, up, back}) {
+    const [front, high] = base(recipe, info), side = cross(high, front), k = 180 / Math.PI;
+    const rise = Math.max(-1, Math.min(1, dot(back, high))), pole = 1 - Math.abs(rise) < 1e-9;
+    const azimuth = pole ? recipe.azimuth ?? 0 : k * Math.atan2(dot(back, side), dot(back, front));
+    const level = axes({...recipe, azimuth, elevation: k * Math.asin(rise), roll: 0}, info);
+    return {azimuth: round(azimuth), elevation: round(k * Math.asin(rise)),
+        roll: round(k * Math.atan2(dot(up, level.right), dot(up, level.up)))};
+}
+
+/** Turns as a ball under the pointer does, over the poles too: about the axis in the
+ * picture that is straight across the drag.
+ * @param {Keys} recipe
+ * @param {Info} info
+ * @param {number} dx
+ * @param {number} dy
+ * @param {number} side */
+export function tumbled(recipe, info, dx, dy, side) {
+    const {right, up, back} = axes(recipe, info), way = Math.hypot(dx, dy);
+    if (!way)
+        return {};
+    const [x, y] = [-dx / way, dy / way], across = add(right.map(a => -a * y), up, x);
+    const [behind, along] = turn(back, add(right.map(a => a * x), up, y), way * 180 / side);
+    return anglesOf(recipe, info, {right: add(along.map(a => a * x), across, -y),
+        up: add(along.map(a => a * y), across, x), back: behind});
+}
+
 /** The object follows the pointer.
  * @param {Keys} recipe
  * @param {Info} info

@@ -15,7 +15,7 @@ const HINTS = [
         touch: 'Presets have other looks. "Drag", below, lets a finger set window and level.',
         keys: ['preset', 'range', 'window', 'opacity', 'colormap', 'channel']},
     {text: 'x shows three slices. Help has a short guide, and all keys.',
-        touch: '"Slices", below, shows three slices. Help has a short guide.', keys: ['slices']}];
+        touch: '"3D + 3", above, shows three slices. Help has a short guide.', keys: ['slices']}];
 
 /** Three lines over the picture, one after another. */
 export class Hints {
@@ -57,7 +57,7 @@ const KEYS = [['Drag', 'turn'], ['Shift or middle drag', 'move'], ['Wheel', 'zoo
     ['Right drag', 'window, level'], ['Ctrl right drag', 'opacity'],
     ['Ctrl drag', 'light'], ['Double click', 'turn around this point'],
     ['u a e', 'measure: length, angle, ellipse; Esc: no more; Delete: the chosen one'],
-    ['x', 'three slices'], ['k', 'handles of clip planes'],
+    ['x', 'slices, or none'], ['h', 'lines where slices cross'], ['k', 'handles of clip planes'],
     ['On a slice', 'drag: where they cross; wheel: next slice; right drag: window, level; ' +
         'Ctrl wheel: zoom; double click: alone'],
     ['On a histogram', 'wheel, + -: zoom its values, 0: all; Page keys: choose a point; arrows: move it'],
@@ -75,15 +75,17 @@ const FOLDER_KEYS = [['o', 'open another volume'], ['n Shift+n', 'the next volum
  * @type {[name: string, text: string, patient?: string][]} */
 const GUIDE = [
     ['Look around', 'Drag the picture to turn it, with Shift to move it; the wheel zooms. A double click ' +
-        'turns around that point. "Camera" has the usual views; "Frame all" shows everything again.',
+        'turns around that point. "Camera" has the usual views, and a press of the cube\'s faces looks from there; ' +
+        '"Frame all" shows everything again. "Drag" below, "turns over the poles", tumbles the volume freely.',
     "Letters at the edges are the patient's sides: Right, Left, Anterior, Posterior, Superior, Inferior."],
     ['Window, level and looks', 'Drag with the right button: to the right for a wider window, up for a higher ' +
         'level. "Presets" shows other looks on this volume, those for its kind first, and saves yours to a file. In ' +
         '"Look" points on the histogram say how opaque each value is: drag them, double-click to add or remove ' +
         'one; the wheel zooms the values. "Mode" has projections, such as mip, ' +
         'the maximum along each ray.'],
-    ['Slices', '"Slices" puts three of them beside the picture. A click in one moves the other two, the wheel ' +
-        'goes to the next, a double click shows one large. The value where they cross stands at the lower right.',
+    ['Slices', 'Buttons at the top choose the layout: the picture, three slices beside it, four of one size, or one ' +
+        'slice large. A click in a slice moves the others, the wheel goes to the next, a double click shows it ' +
+        'alone. The value where they cross stands at the lower right. "Slab" in the panel makes them thick.',
     'The value of a CT is in Hounsfield units, and "Slices" in the panel has the usual windows.'],
     ['Measure', '"Measures" draws lengths and angles, on slices and on the surface, and ellipses on slices, with the ' +
         'mean of their values. The pointer at rest shows the place and the value under it.'],

@@ -47,7 +47,7 @@ export function listenToKeys(store, actions, pointer) {
 
 /** @type {Record<string, keyof import('./types').Actions>} */
 const NAMED = {r: 'fit', m: 'mode', p: 'perspective', l: 'letters', ' ': 'play', c: 'command', v: 'movie', s: 'save',
-    x: 'slices', k: 'handles', d: 'drag', z: 'undo', Z: 'redo', '?': 'help', u: 'length', a: 'angle', e: 'ellipse',
+    x: 'slices', h: 'lines', k: 'handles', d: 'drag', z: 'undo', Z: 'redo', '?': 'help', u: 'length', a: 'angle', e: 'ellipse',
     o: 'open', n: 'next', N: 'previous'};
 
 /** @param {KeyboardEvent} event

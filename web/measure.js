@@ -25,6 +25,7 @@ const TELLS = /** @type {Record<string, string>} */ ({line: 'Drag a line, or cli
     angle: 'Click three points; the second is the corner', ellipse: 'Drag an ellipse on a slice (x shows them)'});
 export const MEASURES = [['line', 'length'], ['angle', 'angle'], ['ellipse', 'ellipse']];
 const ON_LINE = 7; // pixels from a line that are on it
+const ON_POINT = 10; // pixels from a point of the chosen measure, which takes it along
 const CLICK = 4; // pixels that a click may move
 const REST = 100; // ms in which the pointer rests before a value is asked for
 const MOST = 64;
@@ -137,6 +138,19 @@ function path(kind, points, see) {
  *   [way: [axis: number, sign: number], length: number, number: number][]} */
 const waysOf = ({right, width, down, height}, x, y) => [[right, width, x], [down, height, y]];
 
+/** With a point at another place: an ellipse moves by its middle, and keeps the direction
+ * of a half axis.
+ * @type {(item: Item, slot: number, place: Place) => Place[]} */
+function reshaped({kind, points}, slot, place) {
+    const all = points ?? [], [middle] = all;
+    if (kind !== 'ellipse')
+        return all.map((point, n) => n === slot ? place : point);
+    if (slot === 0)
+        return all.map(point => add(point, add(place, middle, -1)));
+    const way = add(all[slot], middle, -1), share = dot(add(place, middle, -1), way) / dot(way, way);
+    return all.map((point, n) => n === slot ? add(middle, way, Math.max(0.05, Math.abs(share))) : point);
+}
+
 /** How far a spot is from a path.
  * @type {(spots: Spot[], at: Spot) => number} */
 function distance(spots, [x, y]) {
@@ -187,6 +201,9 @@ export class Measure {
         this.hearers = [];
         /** @type {Spot|null} */
         this.pressed = null;
+        /** The point of the chosen measure that is dragged.
+         * @type {{pane: Pane|null, n: number, slot: number, item: Item, moved: boolean}|null} */
+        this.held = null;
         /** @type {object|null} */
         this.over = null; // what is asked of under the pointer
         /** @type {number|undefined} */
@@ -372,13 +389,16 @@ export class Measure {
             return;
         const spot = this.spot(event);
         this.pressed = event.button || !event.isPrimary ? null : spot;
+        const slot = this.tool || !this.pressed || event.shiftKey || event.ctrlKey || event.metaKey ? -1
+            : this.pointAt(pane, spot);
+        if (slot >= 0) {
+            this.held = {pane, n: this.chosen, slot, item: this.items[this.chosen], moved: false};
+            this.catch(event);
+            return;
+        }
         if (!this.tool || event.button || !event.isPrimary || event.shiftKey || event.ctrlKey || event.metaKey)
             return;
-        event.stopPropagation();
-        event.preventDefault();
-        const canvas = /** @type {HTMLElement} */ (event.target);
-        canvas.focus();
-        canvas.setPointerCapture(event.pointerId);
+        this.catch(event);
         if (!pane && this.tool === 'ellipse') {
             this.store.say('An ellipse is drawn on a slice: x shows them.');
             return;
@@ -389,11 +409,69 @@ export class Measure {
         this.add(spot);
     }
 
+    /** Nobody else gets what the pointer does until it is let go.
+     * @param {PointerEvent} event */
+    catch(event) {
+        event.stopPropagation();
+        event.preventDefault();
+        const canvas = /** @type {HTMLElement} */ (event.target);
+        canvas.focus();
+        canvas.setPointerCapture(event.pointerId);
+    }
+
+    /** Which point of the chosen measure is at a spot; -1: none.  An ellipse lies in slices.
+     * @param {Pane|null} pane
+     * @param {Spot} spot */
+    pointAt(pane, [x, y]) {
+        const item = this.items[this.chosen];
+        if (!item?.points || !this.isIn(pane, this.chosen) || (!pane && (item.kind === 'ellipse' || this.engine.flat)))
+            return -1;
+        const far = item.points.map(point => this.see(pane, point)).map(
+            seen => seen ? Math.hypot(seen[0] - x, seen[1] - y) : Infinity);
+        const least = Math.min(...far);
+        return least <= ON_POINT ? far.indexOf(least) : -1;
+    }
+
+    /** Numbers come when it is let go.
+     * @param {Place} place */
+    drag(place) {
+        const {n, slot, item} = known(this.held);
+        this.items[n] = {...item, points: reshaped(item, slot, place), result: undefined};
+        this.changed();
+    }
+
+    /** Lets a point go, where it is: on the surface, in the picture.  One step to undo.
+     * @param {Spot} spot */
+    async drop(spot) {
+        const {pane, n, slot, item, moved} = known(this.held), {info} = this;
+        this.held = null;
+        const place = !moved ? null : pane ? this.placeIn(pane, spot) : await this.surfaceAt(spot);
+        this.items[n] = item;
+        if (moved && !place)
+            this.store.say('Nothing opaque is there to measure; modes over and iso have a surface.');
+        if (place) {
+            const begin = item.kind === 'ellipse' ? item.words.split(/\s+/).slice(0, 3) : [item.kind];
+            const words = [...begin, ...reshaped(item, slot, place).map(point => wordOf(info, point))];
+            if (new Set(words).size === words.length) // no two points are one
+                this.set(this.items.map((each, i) => i === n ? words.join(' ') : each.words));
+            this.chosen = n;
+        }
+        this.changed();
+    }
+
     /** @param {PointerEvent} event */
     move(event) {
         const pane = this.paneOf(event);
         if (pane === undefined || !this.offered)
             return;
+        if (this.held) {
+            const spot = this.spot(event), from = this.pressed ?? spot;
+            event.stopPropagation();
+            this.held.moved ||= Math.hypot(spot[0] - from[0], spot[1] - from[1]) > CLICK;
+            if (this.held.moved && pane && pane === this.held.pane)
+                this.drag(this.placeIn(pane, spot));
+            return;
+        }
         if (this.pending && this.pending.pane === pane) {
             this.pending.at = this.spot(event);
             this.redraw(pane);
@@ -412,6 +490,11 @@ export class Measure {
         const spot = this.spot(event);
         const moved = pressed && Math.hypot(spot[0] - pressed[0], spot[1] - pressed[1]) > CLICK;
         this.pressed = null;
+        if (this.held) {
+            event.stopPropagation();
+            this.drop(spot);
+            return;
+        }
         if (pending?.dragged) {
             event.stopPropagation();
             pending.dragged = false;
@@ -586,6 +669,8 @@ export class Measure {
         const item = this.items[this.chosen];
         if (item?.points)
             this.stroke(g, path(item.kind, item.points, place => this.see(null, place)), true);
+        if (item?.points && item.kind !== 'ellipse' && !this.engine.flat)
+            this.grips(g, null, item.points);
         this.drawPending(g, null);
     }
 
@@ -598,6 +683,8 @@ export class Measure {
                 return;
             const spots = path(item.kind, item.points, place => this.see(pane, place));
             this.stroke(g, spots, n === this.chosen);
+            if (n === this.chosen)
+                this.grips(g, pane, item.points);
             this.write(g, item, spots);
         });
         this.drawPending(g, pane);
@@ -637,6 +724,24 @@ export class Measure {
                 g.arc(x, y, 2.5, 0, 7);
                 g.stroke();
             }
+        }
+    }
+
+    /** Points that can be dragged.
+     * @param {CanvasRenderingContext2D} g
+     * @param {Pane|null} pane
+     * @param {Place[]} points */
+    grips(g, pane, points) {
+        for (const seen of points.map(point => this.see(pane, point))) {
+            if (!seen)
+                continue;
+            g.beginPath();
+            g.arc(seen[0], seen[1], 5, 0, 7);
+            g.fillStyle = '#ffd54a';
+            g.strokeStyle = '#000';
+            g.lineWidth = 1.5;
+            g.fill();
+            g.stroke();
         }
     }
 

@@ -60,7 +60,7 @@ export class Overlay {
         const {canvas, store: {info}} = this;
         if (!info || !width)
             return;
-        canvas.hidden = !(this.slices.keys && info.slices); // empty, it costs as much
+        canvas.hidden = !(this.slices.keys && info.slices && this.slices.hasLines); // empty, it costs as much
         const g = canvas.hidden ? null : surface(canvas)?.g;
         if (g) {
             g.translate(width / 2 - this.pointer.shift, height / 2);

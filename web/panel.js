@@ -5,6 +5,7 @@ import {Channels} from './channels.js';
 import {Colors, ownColors, painted, ranged, text, upright} from './colors.js';
 import {button, check, ink, line, make, number, row, section, select, short, show, slider, tip}
     from './controls.js';
+import {WORLD_VIEWS} from './cube.js';
 import {BY_GRADIENT, Editor} from './editor.js';
 import {MODE_NAMES, VIEWS} from './keys.js';
 import {mixed, overlayKeys} from './look.js';
@@ -20,8 +21,9 @@ import {known} from './store.js';
  * @typedef {{get: (keys: Keys) => {opacity?: Point[], colormap?: string},
  *   set: (changes: {preset?: string, colormap?: string, range?: number[], opacity?: Point[]}) => void}} Own */
 
-const WORLD_VIEWS = ['+x', '-x', '+y', '-y', '+z', '-z'];
 const AXES = ['x', 'y', 'z'];
+const FIRST_PANE = 4;
+const FOV_MOST = 120; // degrees
 
 /** @param {number[]} list
  * @param {number} i
@@ -217,11 +219,19 @@ export class Panel {
             keys => short(keys.zoom ?? 1));
         const height = this.kept(number('height, a factor', value => value > 0 && store.set({'z-scale': value})),
             keys => keys['z-scale'] ?? '');
+        const fov = this.kept(number('angle of the perspective in degrees',
+            value => store.set({perspective: Math.max(0, Math.min(FOV_MOST, value))})),
+        keys => keys.perspective ? short(keys.perspective) : '');
+        const cubed = this.box('cube of directions', () => store.cube, on => {
+            store.cube = on;
+            store.changed();
+        });
         return section('Camera', true, views, row('Angles', ...angles),
             row('Zoom', zoom, button('Frame all', 'Frame what the look shows (r)', actions.fit)),
             info.medical ? '' : row('Height', height),
-            tip(this.box('perspective', keys => (keys.perspective ?? 0) > 0, actions.perspective),
-                'What is nearer is larger (p)'));
+            make('div', {className: 'row'}, tip(this.box('perspective', keys => (keys.perspective ?? 0) > 0,
+                actions.perspective), 'What is nearer is larger (p)'), fov, 'degrees'),
+            cubed);
     }
 
     /** Two planes across each axis of the world, tilted ones, and the box that is

@@ -1,6 +1,6 @@
 // pointer.js - mouse, wheel and fingers on the picture.
 
-import {panned, round, turned, zoomed} from './camera.js';
+import {panned, round, tumbled, turned, zoomed} from './camera.js';
 import {ranged} from './colors.js';
 import {apart, listen, pinched} from './controls.js';
 import {listed, mixed} from './look.js';
@@ -11,7 +11,7 @@ import {known} from './store.js';
 
 /** What a drag does, by button and key; otherwise what was chosen, as a finger has
  * neither. */
-export const TOOLS = [['turn', 'turns'], ['pan', 'moves'], ['window', 'window, level'],
+export const TOOLS = [['turn', 'turns'], ['tumble', 'turns over the poles'], ['pan', 'moves'], ['window', 'window, level'],
     ['opacity', 'opacity'], ['light', 'light']];
 
 /** @param {MouseEvent} event
@@ -150,6 +150,8 @@ export class Pointer {
         this.total = [this.total[0] + dx, this.total[1] + dy];
         if (kind === 'turn')
             store.set(turned(keys, dx, dy, this.box[1]));
+        else if (kind === 'tumble')
+            store.set(tumbled(keys, info, dx, dy, this.box[1]));
         else if (kind === 'pan')
             store.set(panned(keys, info, dx, dy, this.side));
         else if (kind === 'light')

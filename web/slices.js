@@ -8,6 +8,7 @@ import {apart, button, check, listen, make, number, pinched, row, section, selec
     slider, surface} from './controls.js';
 import {STEPS} from './keys.js';
 import {kindOf} from './pointer.js';
+import {slabText, thickness} from './slab.js';
 import {known} from './store.js';
 
 /** @typedef {import('./types').Info} Info */
@@ -18,6 +19,8 @@ import {known} from './store.js';
 export const COLORS = ['#ff7b72', '#56d364', '#6db1ff', '#e3b341']; // across x, y, z of the grid
 const REST = 200; // ms until the exact picture is asked for
 const STEP = 60; // of the wheel
+const SMALL = 150; // pixels of a pane's side
+const EDGE = 12; // pixels from the edge of a pane, within which a crosshair is in sight
 const MAGNIFIED_MOST = 40;
 
 /** Of a CT, in Hounsfield units: width and level.
@@ -74,7 +77,7 @@ export class Pane {
     constructor(owner, number_) {
         this.owner = owner;
         this.number = number_;
-        this.zoom = 1;
+        this.own = 1; // zoom, while others have another
         this.turned = 0; // the wheel, since the last slice
         /** @type {Map<number, Pair>} */
         this.fingers = new Map();
@@ -102,11 +105,22 @@ export class Pane {
         this.element = make('figure', {className: 'pane'}, this.canvas, this.caption,
             button('\u2922', 'This slice alone, or all (Enter)', () => owner.alone(this)), this.slider);
         listen(this.canvas, this);
-        new ResizeObserver(() => this.draw()).observe(this.canvas);
+        new ResizeObserver(() => this.fitted()).observe(this.canvas);
     }
 
     get info() {
         return known(this.slice);
+    }
+
+    /** A small pane has a short caption, and little else. */
+    get isSmall() {
+        return Math.min(this.canvas.clientWidth, this.canvas.clientHeight) < SMALL;
+    }
+
+    fitted() {
+        this.element.classList.toggle('small', this.isSmall);
+        if (this.slice && this.owner.keys)
+            this.show();
     }
 
     get along() {
@@ -123,10 +137,28 @@ export class Pane {
             this.owner.store.end();
     }
 
+    /** The length of a pixel of the slice in the world. */
+    get length() {
+        const {info, owner: {info: {dims, matrix}}} = this, [k] = info.right;
+        return dims[k] * Math.hypot(...column(matrix, k)) / info.width;
+    }
+
+    /** The scale at which the slice fits. */
+    get fit() {
+        const {canvas: {clientWidth: width, clientHeight: height}, info} = this;
+        return Math.min(width / info.width, height / info.height);
+    }
+
+    /** One for all, as pixels of the screen in the world, or its own. */
+    get zoom() {
+        const {owner} = this;
+        return owner.isApart ? this.own : owner.scale ? owner.scale * this.length / this.fit : 1;
+    }
+
     /** Where the slice lies in the pane: its corner, and the length of a pixel. */
     get place() {
         const {clientWidth: width, clientHeight: height} = this.canvas, {info} = this;
-        const scale = this.zoom * Math.min(width / info.width, height / info.height);
+        const scale = this.zoom * this.fit;
         return {scale, x: width / 2 - (info.width / 2 + this.middle[0]) * scale,
             y: height / 2 - (info.height / 2 + this.middle[1]) * scale};
     }
@@ -206,17 +238,41 @@ export class Pane {
         this.draw();
     }
 
-    /** About a place, which stays.
+    /** About a place, which stays; others about the crossing.
      * @param {number} factor
      * @param {Pair} place */
-    zoomAt(factor, [x, y]) {
-        const before = this.place;
-        this.zoom = Math.max(1, Math.min(MAGNIFIED_MOST, this.zoom * factor));
-        const after = this.place, part = 1 / before.scale - 1 / after.scale;
-        const {clientWidth, clientHeight} = this.canvas;
+    zoomAt(factor, place) {
+        const {owner} = this, panes = owner.isApart ? [this] : owner.panes;
+        const zoom = Math.max(1, Math.min(MAGNIFIED_MOST, this.zoom * factor));
+        const before = panes.map(pane => pane.place);
+        this.own = zoom;
+        owner.scale = zoom === 1 ? null : zoom * this.fit / this.length;
+        panes.forEach((pane, i) => pane.hold(before[i], pane === this ? place : null));
+    }
+
+    /** Moves the slice so that a place stays where it was before, or the crossing, which
+     * is brought into sight.
+     * @param {{scale: number, x: number, y: number}} before
+     * @param {Pair|null} place */
+    hold(before, place) {
+        const {scale} = this.place, {clientWidth, clientHeight} = this.canvas, {cross: [right, down]} = this;
+        const [x, y] = place ?? [before.x + right * before.scale, before.y + down * before.scale];
+        const part = 1 / before.scale - 1 / scale;
         this.middle = this.zoom === 1 ? [0, 0]
             : [this.middle[0] + (x - clientWidth / 2) * part, this.middle[1] + (y - clientHeight / 2) * part];
+        if (!place)
+            this.seek();
         this.draw();
+    }
+
+    /** A slice that is larger than its pane shows where slices cross. */
+    seek() {
+        if (!this.slice || this.zoom === 1 || this.fingers.size)
+            return;
+        const {x, y, scale} = this.place, {info, cross: [right, down], canvas} = this;
+        const [px, py] = [x + right * scale, y + down * scale];
+        if (px < EDGE || py < EDGE || px > canvas.clientWidth - EDGE || py > canvas.clientHeight - EDGE)
+            this.middle = [right - info.width / 2, down - info.height / 2];
     }
 
     /** @param {WheelEvent} event */
@@ -262,7 +318,7 @@ export class Pane {
     get wish() {
         const {index, crossing: keys} = this.owner;
         return {axis: this.info.axis, index: index[this.along], range: keys.range,
-            colored: keys.colored ?? false};
+            colored: keys.colored ?? false, ...keys.slab && {slab: keys.slab}};
     }
 
     /** Asks for what is not there yet: at most one picture is under way. */
@@ -304,13 +360,13 @@ export class Pane {
     show() {
         const {info: whole, index} = this.owner, count = whole.dims[this.along];
         const name = this.info.axis.length === 1 ? `across ${this.info.axis}` : this.info.axis;
-        this.caption.textContent = `${name} ${index[this.along]}/${count - 1}, ` +
-            placeText(whole, this.along, world(whole, index));
+        const place = `${name} ${index[this.along]}/${count - 1}, ` + placeText(whole, this.along, world(whole, index));
+        this.caption.textContent = this.isSmall ? `${name} ${index[this.along]}` : place;
         this.caption.style.color = COLORS[this.along];
         this.slider.max = `${count - 1}`;
         this.slider.value = `${index[this.along]}`;
         this.slider.setAttribute('aria-label', `${name} slice`);
-        this.canvas.setAttribute('aria-label', `Slice ${this.caption.textContent}. Arrow keys move ` +
+        this.canvas.setAttribute('aria-label', `Slice ${place}. Arrow keys move ` +
             'the crosshair, Page keys choose the slice, Enter shows it alone.');
         this.draw();
     }
@@ -324,8 +380,10 @@ export class Pane {
         g.imageSmoothingQuality = 'high';
         g.drawImage(bitmap, x, y, info.width * scale, info.height * scale);
         const {cross: [right, down]} = this, px = x + right * scale, py = y + down * scale;
-        this.line(g, COLORS[info.right[0]], [px, 0, px, py - 9], [px, py + 9, px, height]);
-        this.line(g, COLORS[info.down[0]], [0, py, px - 9, py], [px + 9, py, width, py]);
+        if (this.owner.hasLines) {
+            this.line(g, COLORS[info.right[0]], [px, 0, px, py - 9], [px, py + 9, px, height]);
+            this.line(g, COLORS[info.down[0]], [0, py, px - 9, py], [px + 9, py, width, py]);
+        }
         this.write(g, width, height);
         this.owner.drawOver(this, g);
     }
@@ -365,12 +423,16 @@ export class Pane {
         g.textBaseline = 'middle';
         put(letter(info, r, a), width - 5, height / 2, 'right');
         put(letter(info, r, -a), 5, height / 2, 'left');
+        if (this.isSmall)
+            return;
         const caption = this.caption.offsetTop + this.caption.offsetHeight; // it may have two lines
         put(letter(info, d, -b), width / 2, Math.max(32, caption + 10), 'center');
         put(letter(info, d, b), width / 2, height - 46, 'center');
         g.font = '12px system-ui, sans-serif';
         const [low, high] = keys.range;
         put(`W ${short(high - low)} L ${short((low + high) / 2)}`, 5, height - 30, 'left');
+        if (keys.slab)
+            put(slabText(keys.slab), 5, height - 46, 'left');
         if (Number.isFinite(value))
             put(short(value), width - 5, height - 30, 'right');
     }
@@ -387,6 +449,10 @@ export class Slices {
         this.views = views;
         this.n = 0;
         this.value = NaN; // where the lines cross
+        /** @type {number|null} */
+        this.scale = null; // pixels of the screen in the world; null: each slice fits
+        this.seen = ''; // where slices crossed last
+        this.last = this.keys; // how they were before they were put away
         this.at = ''; // where a value was asked for last,
         this.waits = false; // and it has not come
         /** Draws what else lies in a slice.
@@ -436,13 +502,40 @@ export class Slices {
         this.store.set({slices: {...this.crossing, ...changes}});
     }
 
+    /** Whether each slice has a zoom of its own. */
+    get isApart() {
+        return Boolean(this.keys?.apart);
+    }
+
+    get hasLines() {
+        return this.keys?.lines !== false;
+    }
+
+    /** @returns {import('./layout.js').Name} */
+    get layout() {
+        return this.keys ? this.keys.layout ?? 'beside' : 'picture';
+    }
+
     toggle() {
-        const {info} = this;
-        if (!info.slices)
+        this.arrange(this.keys ? 'picture' : this.last?.layout ?? 'beside');
+    }
+
+    /** Once more a large slice: the next one.
+     * @param {import('./layout.js').Name} name */
+    arrange(name) {
+        const {info, keys, layout} = this;
+        if (!info.slices || (name === layout && name !== 'slice'))
             return;
         this.views.classList.remove('alone');
-        this.store.set({slices: this.keys ? null : {range: apart(info.window, 5),
-            at: world(info, info.dims.map(count => Math.floor(count / 2)))}});
+        this.store.part();
+        if (name === 'picture') {
+            this.store.set({slices: null});
+            return;
+        }
+        const {large = 0, ...own} = keys ?? this.last ?? {range: apart(info.window, 5),
+            at: world(info, info.dims.map(count => Math.floor(count / 2)))};
+        const next = name === 'slice' && layout === 'slice' ? (large + 1) % this.panes.length : large;
+        this.store.set({slices: {...own, layout: name === 'beside' ? undefined : name, ...next && {large: next}}});
     }
 
     /** @param {number[]} index */
@@ -483,6 +576,17 @@ export class Slices {
             each.element.classList.toggle('chosen', on && each === pane);
     }
 
+    /** What is seen stays as it is, apart; linked, all take the zoom of the first one.
+     * @param {boolean} on */
+    link(on) {
+        const [first] = this.panes, zooms = this.panes.map(pane => pane.zoom);
+        this.panes.forEach((pane, i) => {
+            pane.own = zooms[i];
+        });
+        this.scale = zooms[0] === 1 ? null : zooms[0] * first.fit / first.length;
+        this.set({apart: on ? undefined : true});
+    }
+
     /** @param {Pane} pane */
     command(pane) {
         this.engine.ask('slice-command', pane.wish);
@@ -490,6 +594,7 @@ export class Slices {
 
     /** After a connection was lost, or for another volume. */
     renew() {
+        this.last = this.keys;
         for (const pane of this.panes) {
             pane.busy = pane.exact = false;
             pane.asked = '';
@@ -538,17 +643,24 @@ export class Slices {
     update() {
         const slices = this.keys && this.store.info?.slices;
         this.views.classList.toggle('sliced', Boolean(slices));
+        this.views.dataset.layout = this.layout;
+        this.last = this.keys ?? this.last;
         if (!slices) {
             this.putAway();
             return;
         }
+        const at = String(this.index);
         this.panes.forEach((pane, i) => {
             pane.slice = slices[i];
             if (!pane.element.isConnected)
                 this.views.append(pane.element);
+            pane.element.classList.toggle('large', i === (this.crossing.large ?? 0));
+            if (this.seen !== at)
+                pane.seek();
             pane.show();
             pane.ask();
         });
+        this.seen = at;
         this.askValue();
     }
 
@@ -569,10 +681,14 @@ export class Slices {
             named.value = '';
         });
         const colored = check('in the colours of the look', value => this.set({colored: value}));
+        const lines = check('lines where they cross (h)', value => this.set({lines: value ? undefined : false}));
+        const linked = check('one zoom for all', value => this.link(value));
+        const slab = thickness(this);
         const places = ['x', 'y', 'z'].map((name, k) => number(`voxel ${name} where slices cross`,
             value => this.goTo(this.index.map((i, j) => j === k ? Math.round(value) : i)), 1));
         const more = make('div', {}, row('Window', named), row('Width, level', wide, middle),
-            row('Voxel', ...places), colored.label, make('div', {className: 'row'},
+            row('Voxel', ...places), slab.row,
+            colored.label, lines.label, linked.label, make('div', {className: 'row'},
                 ...info.slices?.map((each, i) => button(`Command, ${each.axis}`,
                     `The command that makes the slice ${each.axis}`,
                     () => this.command(this.panes[i]))) ?? []));
@@ -586,6 +702,9 @@ export class Slices {
             show(middle, short((keys.range[0] + keys.range[1]) / 2));
             this.index.forEach((i, k) => show(places[k], i));
             colored.box.checked = Boolean(keys.colored);
+            lines.box.checked = this.hasLines;
+            linked.box.checked = !this.isApart;
+            slab.follow();
         });
         const made = section('Slices', false, on.label, more);
         made.hidden = !info.slices;

@@ -67,6 +67,7 @@ export class Store {
 
         // Of this page alone.
         this.tool = 'turn'; // what a drag does
+        this.cube = true; // of directions, on the picture
         this.letters = true; // keys that are single letters act
         this.clipping = false; // handles of clip planes are shown
         /** @type {Blob|null} */

@@ -6,8 +6,10 @@ export type Vector = number[]; // of the world: three numbers
 export type Point = [value: number, opacity: number];
 export type Plane = [a: number, b: number, c: number, d: number];
 
-/** Where slices cross and their window: of this page alone, so that no server gets it. */
-export type Crossing = {at: Vector, range: Pair, colored?: boolean};
+/** Where slices cross, their window, and how they are shown: of this page alone, so that
+ * no server gets it.  What is left out: beside the picture, lines, one zoom, no slab. */
+export type Crossing = {at: Vector, range: Pair, colored?: boolean, layout?: 'grid' | 'slice', large?: number,
+    lines?: false, apart?: true, slab?: string};
 
 /** A recipe: docs/viewer.md and `snowglass help config` say what its keys mean. */
 export type Keys = {
@@ -127,7 +129,7 @@ export interface Engine {
 export type Actions = {
     view(name: string): void, measure(tool: string | null): void, length(): void, angle(): void, ellipse(): void,
     fit(): void, mode(): void, perspective(): void, letters(): void, play(): void,
-    drag(): void, slices(): void, handles(): void, command(): void, movie(): void, link(): void, file(): void, saveLook(): void, choose(): void,
+    drag(): void, slices(): void, lines(): void, handles(): void, command(): void, movie(): void, link(): void, file(): void, saveLook(): void, choose(): void,
     save(): void, reset(): void, undo(): void, redo(): void, help(): void,
     open(): void, next(): void, previous(): void};
 

@@ -22,6 +22,12 @@ const arePoints = isList(0, isList(2));
 /** @type {Test} */
 const isOn = value => value === true;
 
+/** How slices are shown.
+ * @type {Record<string, Test>} */
+const own = {colored: value => typeof value === 'boolean', layout: isNamed(['grid', 'slice']),
+    large: value => [0, 1, 2].includes(value), lines: value => value === false, apart: isOn,
+    slab: value => isText(value) && /^[\d.e+-]+[^:]*:(max|mean|min)$/.test(value)};
+
 /** What a value has to be; other keys are for the server to judge.
  * @type {(info: import('./types').Info) => Record<string, Test>} */
 const shapes = ({times}) => ({
@@ -36,7 +42,8 @@ const shapes = ({times}) => ({
     window: isList(2), light: isOne(isNamed(['key', 'head']), isList(2)), shade: isNamed(['phong', 'none']),
     legend: isOne(isOn, isText), box: isText, measure: isText, 'no-labels': isOn, mask: isOn, overlay: isOn,
     'overlay-look': isText, channel: isOne(isText, isNumber), component: isOne(isText, isNumber),
-    slices: value => isRange(value?.range) && isList(3)(value.at)});
+    slices: value => isRange(value?.range) && isList(3)(value.at) && Object.entries(value).every(
+        ([key, each]) => own[key]?.(each) ?? true)});
 
 /** The keys that are good, which have the types that their tests say, and the names of the others.
  * @param {Record<string, unknown>} keys

@@ -4,9 +4,11 @@
 import {button, context, make, select, tip} from './controls.js';
 import {ServerEngine} from './engine_server.js';
 import {aimed, unproject} from './camera.js';
+import {Cube} from './cube.js';
 import {Folder} from './folder.js';
 import {Hints, help} from './help.js';
 import {MODES, MODE_NAMES, listenToKeys} from './keys.js';
+import {layouts} from './layout.js';
 import {MEASURES, Measure} from './measure.js';
 import {Movies} from './movies.js';
 import {Overlay} from './overlay.js';
@@ -156,6 +158,7 @@ const actions = {
         say(`A drag ${tool.selectedOptions[0].text}`);
     },
     slices: () => slices.toggle(),
+    lines: () => slices.keys && slices.set({lines: slices.keys.lines === false ? undefined : false}),
     /** Another press puts it away. */
     measure(name) {
         const own = measure.offered && measure.tool !== name ? name : null;
@@ -354,9 +357,9 @@ const movies = new Movies(store, times, save);
 /** @type {Panel} */
 const panel = new Panel(store, actions, slices, measure, times, movies);
 const overlay = new Overlay(store, pointer, slices);
-const hints = new Hints(store);
+const hints = new Hints(store), cube = new Cube(store, picture, actions);
 const folder = new Folder(store, chooseFile);
-picture.append(measure.canvas, ...overlay.elements, hints.element);
+picture.append(measure.canvas, ...overlay.elements, cube.element, hints.element);
 let renewed = false; // another volume of a folder is open, whose state follows
 let first = true, fresh = true; // the first state of all, and of a connection
 /** What the page began with.
@@ -431,6 +434,7 @@ engine.on('info', info => {
     else
         panel.build();
     slices.renew();
+    cube.name(info);
     engine.ask('histogram');
     ready();
 });
@@ -474,7 +478,7 @@ const tool = select([...TOOLS, ...MEASURES], name => {
     measure.take(own ? name : null);
     store.tool = own ? store.tool : name;
 });
-const sliced = button('Slices', 'Three slices beside the picture (x)', actions.slices);
+const sliced = layouts(slices);
 const file = make('input', {type: 'file', onchange: () => shared.take(file.files ?? [])});
 const chooser = button('Open', 'Open a recipe, or drop it on the page', () => actions.open());
 function chooseFile() {
@@ -488,7 +492,7 @@ engine.on('folder', () => {
 const commanded = button('Command', 'Copy the command that makes this picture (c)', actions.command);
 const filmed = button('Movie', 'Copy the command that makes a movie, as the section Movie has it (v)',
     actions.movie);
-buttons.append(tip(make('label', {}, 'Drag ', tool), 'What a drag, and arrow keys, do (d: the next)'), sliced,
+buttons.append(tip(make('label', {}, 'Drag ', tool), 'What a drag, and arrow keys, do (d: the next)'),
     commanded, filmed,
     button('Link', 'Copy a link to this state', actions.link),
     button('Recipe', 'Save the recipe of this state', actions.file),
@@ -498,7 +502,7 @@ for (const each of buttons.querySelectorAll('button'))
     each.disabled = true;
 document.getElementById('viewer')?.append(
     make('section', {className: 'stage', 'aria-label': 'Picture'},
-        make('div', {className: 'top'}, make('h1', {textContent: 'snowglass'}), title, level, folder.buttons, chooser,
+        make('div', {className: 'top'}, make('h1', {textContent: 'snowglass'}), title, level, folder.buttons, sliced, chooser,
             button('Help', 'A short guide, and all keys (?)', actions.help)),
         views,
         make('div', {className: 'bottom'}, figures, buttons)),
@@ -507,6 +511,7 @@ listenToKeys(store, actions, pointer);
 new ResizeObserver(() => {
     overlay.draw();
     measure.draw();
+    cube.draw();
     if (!first)
         fitWindow();
 }).observe(picture);

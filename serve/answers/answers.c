@@ -155,11 +155,12 @@ static bool read_slice(const json_t *tree, slice_asked *out) {
     out->low = json_number_value(json_array_get(range, 0));
     out->high = json_number_value(json_array_get(range, 1));
     out->colored = json_is_true(json_object_get(tree, "colored"));
+    out->slab = json_string_value(json_object_get(tree, "slab"));
     return out->axis && out->low < out->high;
 }
 
 /* {"what": "slice", "axis": "axial", "index": 57, "range": [0, 80], "pane": 1,
- * "n": 8, "exact": true}: {"t": "slice", "pane": 1} where there is none, as the
+ * "n": 8, "exact": true, "slab": "10mm:max"}: {"t": "slice", "pane": 1} where there is none, as the
  * page waits for it. */
 static int answer_slice(drawing *d, outbox *box, uint64_t client,
                         const json_t *tree) {

@@ -14,7 +14,7 @@
 
 typedef struct kept_slice {
     snow_volume *volumes[SNOW_CHANNELS_MAX]; /* of each channel; or NULL */
-    int64_t index;
+    int64_t index, half;                     /* with so many on either side */
 } kept_slice;
 
 typedef struct kept_channel {

@@ -5,6 +5,7 @@
 #include "options/config.h"
 #include "run/log.h"
 #include "run/start.h"
+#include "slice/slab.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -123,6 +124,8 @@ static json_t *slice_tree(const drawing *d, const slice_asked *asked) {
         json_object_set_new(tree, "range",
                             json_pack("[f,f]", asked->low, asked->high));
     json_object_set_new(tree, "no-labels", json_true());
+    if (asked->slab)
+        json_object_set_new(tree, "slab", json_string(asked->slab));
     take_channels(d, asked, tree);
     return tree;
 }
@@ -204,25 +207,29 @@ static int open_kept(drawing *d, const options *given, kept_slice *kept,
 }
 
 /* A volume that stays in its file, or of which ranks have parts, is opened
- * again, cropped to the slice, which is then its first.  It is kept: the
- * picture at rest and the value where slices cross need it too. */
-static int open_slice(drawing *d, options *opts, int along, int64_t *index,
-                      snow_volume *out[SNOW_CHANNELS_MAX]) {
+ * again, cropped to the slice and those of its slab.  It is kept: the picture
+ * at rest and the value where slices cross need it too. */
+static int open_slice(drawing *d, options *opts, int along, const slab *s,
+                      int64_t *index, snow_volume *out[SNOW_CHANNELS_MAX]) {
     kept_slice *kept = &d->kept[along];
     const int count = opts->channels.count ? opts->channels.count : 1;
     const bool here = has_all(d);
     int64_t *crop = opts->crop[along];
     int done = CONTINUE;
-    if (!here && kept->index != *index)
+    if (!here && (kept->index != *index || kept->half < s->half))
         forget_slice(kept);
-    crop[0] += here ? 0 : *index;
-    crop[1] = here ? crop[1] : crop[0] + 1;
+    if (!here && !kept->volumes[0])
+        kept->half = s->half;
+    const slab_slices slices = slab_around(&(slab){.half = kept->half},
+                                           &d->state.whole, along, *index);
+    crop[0] += here ? 0 : slices.first;
+    crop[1] = here ? crop[1] : crop[0] + slices.count;
     kept->index = *index;
     for (int n = 0; n < count && done == CONTINUE; n++) {
         done = here ? CONTINUE : open_kept(d, opts, kept, n);
         out[n] = here ? drawing_unclipped(d, n) : kept->volumes[n];
     }
-    *index = here ? *index : 0;
+    *index -= here ? 0 : slices.first;
     return done;
 }
 
@@ -239,12 +246,33 @@ static int open_overlay(drawing *d, const options *opts,
     return done;
 }
 
-/* The view is that of the voxels that are there, since its zoom counts in their
- * size. */
-static int draw(drawing *d, snow_volume *const *volumes, const char *axis,
-                int64_t index, const options *opts, snow_image **image) {
+/* The slice of each channel.  The view is that of the voxels that are there,
+ * since its zoom counts in their size. */
+static snow_status draw_values(drawing *d, snow_volume *const *volumes,
+                               const char *axis, int64_t index,
+                               const snow_settings *settings,
+                               snow_image **image) {
     channel_set channels = d->slice_channels;
-    const snow_volume *volume = volumes[0];
+    snow_view view;
+    int along;
+    snow_status status =
+        see(d, snow_volume_get_info(volumes[0]), axis, &view, &along);
+    if (status == SNOW_STATUS_OK)
+        status = snow_slice_render(volumes[0], index, d->slice_look, &view,
+                                   settings, image);
+    if (status != SNOW_STATUS_OK || !channels.list.count)
+        return status;
+    memcpy(channels.volumes, volumes, sizeof channels.volumes);
+    return channels_add_slices(&channels, d->state.context, index, &view,
+                               settings, image);
+}
+
+/* A slab has the overlay of its middle. */
+static int draw(drawing *d, snow_volume *const *volumes, const char *axis,
+                const slab *s, int64_t index, const options *opts,
+                snow_image **image) {
+    const int count = d->slice_channels.list.count;
+    slab_volumes made = {.volumes = {NULL}};
     const layers *overlay;
     snow_settings settings;
     snow_view view;
@@ -253,17 +281,16 @@ static int draw(drawing *d, snow_volume *const *volumes, const char *axis,
     settings.threads = d->state.settings.threads;
     settings.mode = SNOW_MODE_OVER; /* a slice has none */
     snow_status status =
-        see(d, snow_volume_get_info(volume), axis, &view, &along);
+        see(d, snow_volume_get_info(volumes[0]), axis, &view, &along);
+    if (status == SNOW_STATUS_OK && s->half)
+        status = slab_project(d->state.context, s, volumes, count ? count : 1,
+                              along, index, &made);
     if (status == SNOW_STATUS_OK)
-        status = snow_slice_render(volume, index, d->slice_look, &view,
-                                   &settings, image);
-    if (status == SNOW_STATUS_OK && channels.list.count) {
-        memcpy(channels.volumes, volumes, sizeof channels.volumes);
-        status = channels_add_slices(&channels, d->state.context, index, &view,
-                                     &settings, image);
-    }
+        status = draw_values(d, s->half ? made.volumes : volumes, axis,
+                             s->half ? 0 : index, &settings, image);
+    slab_free(&made);
     if (status == SNOW_STATUS_OK) {
-        int done = open_overlay(d, opts, volume, &overlay);
+        int done = open_overlay(d, opts, volumes[0], &overlay);
         if (done != CONTINUE)
             return done;
         status = layers_lay_slice(opts, overlay, index, &view, &settings,
@@ -290,19 +317,24 @@ int slices_draw(drawing *d, const slice_asked *asked, snow_image **image,
     static options opts; /* large; one thread draws */
     snow_volume *volumes[SNOW_CHANNELS_MAX] = {NULL};
     int64_t index = asked->index;
+    slab thick;
     int along;
     *image = NULL;
     int done = check_slice(d, asked, &along);
+    if (done == CONTINUE)
+        done = slab_read(asked->slab, &d->state.whole, along, &thick);
     if (done != CONTINUE)
         return done;
     json_t *tree = slice_tree(d, asked);
     done = slice_options(d, tree, &opts);
     if (done == CONTINUE)
-        done = open_slice(d, &opts, along, &index, volumes);
+        done = open_slice(d, &opts, along, &thick, &index, volumes);
     if (done == CONTINUE)
         done = restyle(d, &opts, tree, volumes);
     if (done == CONTINUE)
-        done = draw(d, volumes, asked->axis, index, &opts, image);
+        done = slab_check(&thick, d->slice_look);
+    if (done == CONTINUE)
+        done = draw(d, volumes, asked->axis, &thick, index, &opts, image);
     if (done != CONTINUE) {
         snow_image_free(*image);
         *image = NULL;
@@ -316,6 +348,11 @@ char *slices_command(drawing *d, const slice_asked *asked) {
     static options opts; /* large; one thread draws */
     char *text = NULL, output[100];
     const verb_row *verb = verb_of(VERB_SLICE);
+    slab thick;
+    int along;
+    if (check_slice(d, asked, &along) != CONTINUE ||
+        slab_read(asked->slab, &d->state.whole, along, &thick) != CONTINUE)
+        return NULL;
     json_t *tree = slice_tree(d, asked);
     int done = slice_options(d, tree, &opts);
     json_decref(tree);
@@ -373,7 +410,8 @@ static double value_in_file(drawing *d, const int64_t at[3]) {
     done = slice_options(d, tree, &opts);
     json_decref(tree);
     if (done == CONTINUE)
-        done = open_slice(d, &opts, along, &within[along], volumes);
+        done = open_slice(d, &opts, along, &(slab){.half = 0}, &within[along],
+                          volumes);
     return done == CONTINUE ? value_at(volumes[0], within) : NAN;
 }
 

@@ -13,6 +13,7 @@ typedef struct slice_asked {
     int64_t index;
     double low, high; /* the range of values that the colours span */
     bool colored;     /* by the look; else grey */
+    const char *slab; /* as of --slab, or NULL */
 } slice_asked;
 
 /* Of each of three slices: {"axis": "axial", "along": 2, "right": [0, -1],

@@ -182,6 +182,7 @@ def measured():
     nrrd(name, (40, 30, 20), each((40, 30, 20), lambda x, y, z: x + 10 * y + z, "h"),
          *placed((1, 2, 4), (10, -20, 30)), kind="int16")
     plan("measures", name, "--opacity", "-1:1,400:1", copies=[PICTURE])
+    plan("layouts", name, "--opacity", "-1:1,400:1", copies=[PICTURE, SLICE])
 
 
 def chosen():

@@ -1,4 +1,5 @@
-"""The page's state without a browser: what it sends, and what it makes of answers."""
+"""The page's state and camera without a browser: what it sends, and what it makes of answers
+and drags."""
 import os
 import shutil
 import subprocess
@@ -15,9 +16,12 @@ if not node:
 folder = tempfile.TemporaryDirectory()
 os.chdir(folder.name)
 shutil.copytree(os.path.join(HERE, "..", "..", "web"), "web")
-shutil.copy(os.path.join(HERE, "web", "store.mjs"), ".")
+for name in "store.mjs", "camera.mjs":
+    shutil.copy(os.path.join(HERE, "web", name), ".")
 with open("web/package.json", "w") as out:
     out.write('{"type": "module"}')
 done = subprocess.run([node, "store.mjs"])
 check("the state of the page", done.returncode == 0, done.returncode)
+done = subprocess.run([node, "camera.mjs"])
+check("its camera", done.returncode == 0, done.returncode)
 finish()

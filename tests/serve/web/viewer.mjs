@@ -12,6 +12,7 @@ import {connect} from 'node:net';
 import {readFileSync, writeFileSync} from 'node:fs';
 import {asked, restarted, steps} from './everyday.mjs';
 import {listed} from './folder.mjs';
+import {layouts} from './layouts.mjs';
 import {measures} from './measures.mjs';
 import {movies} from './movies.mjs';
 import {automatic, transfer} from './transfer.mjs';
@@ -571,7 +572,7 @@ async function slices(page, name = 'slices') {
     await page.waitForFunction(() => document.querySelector('.picture').clientWidth > 0);
     await rest(page);
     await awayAndBack(page);
-    await page.getByRole('button', {name: 'Three slices beside the picture (x)'}).click();
+    await page.getByRole('button', {name: 'The picture alone'}).click();
     check('and all are put away', await page.locator('.pane').count() === 0);
 }
 
@@ -954,7 +955,7 @@ async function film() {
     await hand.drag(await at(0, 0), await at(0.1, 0.15));
     check('it is turned', (await keys(page)).elevation !== near.elevation);
     await seen('7_turned');
-    await hand.press(page.getByRole('button', {name: 'Three slices beside the picture (x)'}));
+    await hand.press(page.getByRole('button', {name: 'Three slices beside the picture'}));
     await slicesRest(page);
     const begin = await crossing(page);
     await hand.reach(canvas);
@@ -1418,9 +1419,9 @@ async function more() {
     await page.context().close();
 }
 
-const tools = {accessible: page => judged(page, 'with the axis near'), answered, check, copied, file, folder, judged, keys, open, shot, part, rest, slicesRest, wheel};
+const tools = {accessible: page => judged(page, 'with the axis near'), answered, check, copied, file, folder, judged, keepBytes, keys, open, shot, part, rest, slicesRest, wheel};
 const known = {short: first, long: all, more, film, steps: () => steps(tools),
-    restarted: () => restarted(tools), asked: () => asked(tools), measures: () => measures(tools), transfer: () => transfer(tools), folder: () => listed(tools), movies: () => movies(tools), embed: embedded, points: manyPoints, mask: masked,
+    restarted: () => restarted(tools), asked: () => asked(tools), measures: () => measures(tools), layouts: () => layouts(tools), transfer: () => transfer(tools), folder: () => listed(tools), movies: () => movies(tools), embed: embedded, points: manyPoints, mask: masked,
     overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, plain: plainChannels, begun, many};
 
 async function run() {
