@@ -33,7 +33,7 @@ macro(add_file name type path)
 endmacro()
 
 add_file("" "text/html; charset=utf-8" ${FOLDER}/index.html)
-file(GLOB paths ${FOLDER}/*.css ${FOLDER}/*.js)
+file(GLOB paths ${FOLDER}/*.css ${FOLDER}/*.js ${FOLDER}/*/*.js) # of names of their own
 if(ESBUILD)
   set(short ${OUT}.d)
   execute_process(COMMAND ${ESBUILD} ${FOLDER}/viewer.js ${FOLDER}/viewer.css --bundle

@@ -1,7 +1,7 @@
 // pointer.js - mouse, wheel and fingers on the picture.
 
 import {panned, round, tumbled, turned, zoomed} from './camera.js';
-import {ranged} from './colors.js';
+import {ranged} from './panel/colors.js';
 import {apart, listen, pinched} from './controls.js';
 import {listed, mixed} from './look.js';
 import {known} from './store.js';

@@ -10,14 +10,14 @@ import {Hints, help} from './help.js';
 import {MODES, MODE_NAMES, listenToKeys} from './keys.js';
 import {layouts} from './layout.js';
 import {MEASURES, Measure} from './measure.js';
-import {Movies} from './movies.js';
-import {Overlay} from './overlay.js';
-import {Panel} from './panel.js';
+import {Movies} from './panel/movies.js';
+import {Overlay} from './panel/overlay.js';
+import {Panel} from './panel/panel.js';
 import {Pointer, TOOLS} from './pointer.js';
-import {isLook} from './presets.js';
+import {isLook} from './panel/presets.js';
 import {Slices} from './slices.js';
 import {Store, known} from './store.js';
-import {Times} from './time.js';
+import {Times} from './panel/time.js';
 import {leftOut, sifted} from './valid.js';
 
 /** @typedef {import('./types').Keys} Keys */

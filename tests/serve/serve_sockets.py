@@ -29,7 +29,7 @@ def texts_of_web():
     """Texts with blanks, which the page's packing could take for code."""
     found = []
     quoted = re.compile(r"""'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*"|`(?:[^`\\]|\\.)*`""")
-    for path in glob.glob(os.path.join(HERE, "../../web/*.js")):
+    for path in glob.glob(os.path.join(HERE, "../../web/**/*.js"), recursive=True):
         with open(path, encoding="utf-8") as file:
             text = re.sub(r"(?s)/\*.*?\*/", "", file.read())
         for line in re.sub(r"(?m)^\s*//.*| // [^'\"`]*$", "", text).splitlines():

@@ -1,26 +1,26 @@
 // overlay.js - what the page draws over the picture and no file has: where the
 // slices lie, and handles that move clip planes.
 
-import {pixel, project} from './camera.js';
+import {pixel, project} from '../camera.js';
 import {grips} from './clip.js';
-import {listen, make, surface} from './controls.js';
-import {STEPS} from './keys.js';
-import {COLORS, world} from './slices.js';
-import {known} from './store.js';
+import {listen, make, surface} from '../controls.js';
+import {STEPS} from '../keys.js';
+import {COLORS, world} from '../slices.js';
+import {known} from '../store.js';
 
-/** @typedef {import('./types').Vector} Vector */
+/** @typedef {import('../types').Vector} Vector */
 
 const HANDLES = 12; // six ends and six tilted planes
 const NAMES = ['x', 'y', 'z'], PATIENT = ['left - right', 'back - front', 'bottom - top'];
 
-/** @param {import('./types').Info} info */
+/** @param {import('../types').Info} info */
 export const axisNames = info => info.medical ? PATIENT : NAMES;
 
 export class Overlay {
     /** `pointer` knows the box of the picture.
-     * @param {import('./store.js').Store} store
-     * @param {import('./pointer.js').Pointer} pointer
-     * @param {import('./slices.js').Slices} slices */
+     * @param {import('../store.js').Store} store
+     * @param {import('../pointer.js').Pointer} pointer
+     * @param {import('../slices.js').Slices} slices */
     constructor(store, pointer, slices) {
         this.store = store;
         this.pointer = pointer;

@@ -4,18 +4,18 @@ import {facing, grips, isFull, PLANES_MOST, tilted, tiltedTo} from './clip.js';
 import {Channels} from './channels.js';
 import {Colors, ownColors, painted, ranged, text, upright} from './colors.js';
 import {button, check, ink, line, make, number, row, section, select, short, show, slider, tip}
-    from './controls.js';
-import {WORLD_VIEWS} from './cube.js';
+    from '../controls.js';
+import {WORLD_VIEWS} from '../cube.js';
 import {BY_GRADIENT, Editor} from './editor.js';
-import {MODE_NAMES, VIEWS} from './keys.js';
-import {mixed, overlayKeys} from './look.js';
+import {MODE_NAMES, VIEWS} from '../keys.js';
+import {mixed, overlayKeys} from '../look.js';
 import {axisNames} from './overlay.js';
 import {NO_SHAPE, Presets} from './presets.js';
-import {known} from './store.js';
+import {known} from '../store.js';
 
-/** @typedef {import('./types').Keys} Keys */
-/** @typedef {import('./types').Label} Label */
-/** @typedef {import('./types').Point} Point */
+/** @typedef {import('../types').Keys} Keys */
+/** @typedef {import('../types').Label} Label */
+/** @typedef {import('../types').Point} Point */
 
 /** Keys of the look of labels, of the volume or the overlay: as they are, and changes of them.
  * @typedef {{get: (keys: Keys) => {opacity?: Point[], colormap?: string},
@@ -40,10 +40,10 @@ const direction = ({light}) => Array.isArray(light) ? light : [0, 0];
 const middle = ({low, high}) => (low + high) / 2;
 
 export class Panel {
-    /** @param {import('./store.js').Store} store
-     * @param {import('./types').Actions} actions
-     * @param {import('./slices.js').Slices} slices
-     * @param {import('./measure.js').Measure} measure
+    /** @param {import('../store.js').Store} store
+     * @param {import('../types').Actions} actions
+     * @param {import('../slices.js').Slices} slices
+     * @param {import('../measure.js').Measure} measure
      * @param {import('./time.js').Times} times
      * @param {import('./movies.js').Movies} movies */
     constructor(store, actions, slices, measure, times, movies) {
@@ -321,7 +321,7 @@ export class Panel {
      * @param {number} value */
     setCrop(full, axis, end, value) {
         const {store} = this;
-        /** @type {import('./types').Pair[]} */
+        /** @type {import('../types').Pair[]} */
         const crop = full.map((size, i) => [store.keys.crop?.[i][0] ?? 0, store.keys.crop?.[i][1] || size]);
         crop[axis][end] = Math.max(0, Math.min(full[axis], value));
         if (crop[axis][0] >= crop[axis][1])

@@ -2,11 +2,11 @@
 // holds, those that suit it first.  The tool's names stand in their tips.  Some are made of
 // several keys of a recipe.
 
-import {button, make, section} from './controls.js';
-import {mixed} from './look.js';
+import {button, make, section} from '../controls.js';
+import {mixed} from '../look.js';
 
-/** @typedef {import('./types').Changes} Changes */
-/** @typedef {import('./types').Info} Info */
+/** @typedef {import('../types').Changes} Changes */
+/** @typedef {import('../types').Info} Info */
 /** A group, a name for readers, what it is; and keys, where it is no preset of the tool.
  * @typedef {{kind: string, name: string, text: string, keys: Changes}} Preset */
 
@@ -26,7 +26,7 @@ const BARE = [...OF_LOOK, 'version', 'tf'];
 export const isLook = recipe => Object.keys(recipe).every(key => BARE.includes(key));
 
 /** Looks of one volume leave of several channels the first.
- * @param {import('./store.js').Store} store */
+ * @param {import('../store.js').Store} store */
 function alone({look}) {
     const first = mixed(look) && look?.channels?.[0]?.[0];
     return typeof first === 'number' ? {channel: `${first}`} : {};
@@ -95,8 +95,8 @@ export function grouped(info) {
 }
 
 export class Presets {
-    /** @param {import('./store.js').Store} store
-     * @param {import('./types').Actions} actions */
+    /** @param {import('../store.js').Store} store
+     * @param {import('../types').Actions} actions */
     constructor(store, actions) {
         this.store = store;
         this.actions = actions;
@@ -171,7 +171,7 @@ export class Presets {
             each.setAttribute('aria-pressed', `${preset === chosen}`);
     }
 
-    /** @param {import('./types').Frame} frame */
+    /** @param {import('../types').Frame} frame */
     show(frame) {
         const image = this.images[frame.pane - FIRST_PANE];
         if (!image)

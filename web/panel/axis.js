@@ -1,7 +1,7 @@
 // axis.js - which part of the values the axis of an editor shows, and where a value lies
 // on it: x = EDGE + (value - low) / (high - low) (width - 2 EDGE).
 
-/** @typedef {import('./types').Pair} Pair */
+/** @typedef {import('../types').Pair} Pair */
 
 export const EDGE = 8; // pixels beside the values
 const MOST = 1e6; // times nearer than all values

@@ -2,18 +2,18 @@
 // added, removed, or set as numbers.  The same for the opacity by gradient.
 
 import {Axis, EDGE} from './axis.js';
-import {button, listen, make, number, row, short, show, slider, surface} from './controls.js';
-import {STEPS} from './keys.js';
-import {unitOf} from './look.js';
-import {known} from './store.js';
+import {button, listen, make, number, row, short, show, slider, surface} from '../controls.js';
+import {STEPS} from '../keys.js';
+import {unitOf} from '../look.js';
+import {known} from '../store.js';
 
-/** @typedef {import('./store.js').Store} Store */
-/** @typedef {import('./types').Point} Point */
+/** @typedef {import('../store.js').Store} Store */
+/** @typedef {import('../types').Point} Point */
 /** @typedef {{x: number, y: number, value: number, opacity: number}} Place */
 
 /** Which points are edited: their key, and those in use where it is not set.
  * @typedef {{key: 'opacity'|'gradient-opacity', name: string, usual: (store: Store) => Point[],
- *   range: (store: Store) => import('./types').Histogram|null}} Kind */
+ *   range: (store: Store) => import('../types').Histogram|null}} Kind */
 
 const NEAR = 12; // pixels
 const NEARER = 1.5; // by a step of the axis
@@ -46,7 +46,7 @@ export class Editor {
         this.drawn = []; // what is shown
         this.axis = new Axis(() => this.all);
         /** The counts of the part that is shown, and of which parts they were asked for.
-         * @type {import('./types').Histogram|null} */
+         * @type {import('../types').Histogram|null} */
         this.closer = null;
         this.closerPart = '';
         /** By the range that was asked for.
@@ -116,7 +116,7 @@ export class Editor {
         return this.axis.span;
     }
 
-    /** @returns {import('./types').Pair} */
+    /** @returns {import('../types').Pair} */
     get all() {
         const histogram = this.kind.range(this.store), points = this.points;
         const low = Math.min(histogram?.lo ?? Infinity, points[0]?.[0] ?? Infinity);
@@ -294,8 +294,8 @@ export class Editor {
 
     /** A part in bins: those of whole numbers are as wide as some of these, or bins of one and
      * of two would stand side by side.
-     * @param {import('./types').Pair} part
-     * @returns {import('./types').Pair} */
+     * @param {import('../types').Pair} part
+     * @returns {import('../types').Pair} */
     counted([low, high]) {
         const {type, min, max} = known(this.store.info);
         if (!/int/.test(type) || !Number.isInteger(min) || !Number.isInteger(max))
@@ -305,7 +305,7 @@ export class Editor {
     }
 
     /** Counts of all values, or of a part.
-     * @param {import('./types').Histogram} counts */
+     * @param {import('../types').Histogram} counts */
     take(counts) {
         const range = `${[counts.lo, counts.hi]}`, part = this.asked.get(range);
         if (!this.asked.delete(range)) {

@@ -1,14 +1,14 @@
 // clip.js - clip planes of a recipe: two across each axis of the world, and tilted
 // ones. A plane [a, b, c, d] takes away what has a x + b y + c z > d.
 
-import {add, axes, cross, dot} from './camera.js';
+import {add, axes, cross, dot} from '../camera.js';
 
 export const PLANES_MOST = 6;
 
-/** @typedef {import('./types').Keys} Keys */
-/** @typedef {import('./types').Info} Info */
-/** @typedef {import('./types').Plane} Plane */
-/** @typedef {import('./types').Pair} Pair */
+/** @typedef {import('../types').Keys} Keys */
+/** @typedef {import('../types').Info} Info */
+/** @typedef {import('../types').Plane} Plane */
+/** @typedef {import('../types').Pair} Pair */
 /** @typedef {{clip: Plane[]|null}} Change */
 
 /** What a handle moves: a place on it, the way in which it moves, and the change of a move.

@@ -1,17 +1,17 @@
 // channels.js - the channels of a file: which are mixed, in which colour, range
 // and opacity.
 
-import {apart, button, check, ink, make, number, section, show, slider} from './controls.js';
-import {listed, mixed} from './look.js';
-import {known} from './store.js';
+import {apart, button, check, ink, make, number, section, show, slider} from '../controls.js';
+import {listed, mixed} from '../look.js';
+import {known} from '../store.js';
 
 const CHANNELS_MOST = 8; // SNOW_CHANNELS_MAX of volume.h
 
-/** @typedef {import('./types').Channel} Channel */
+/** @typedef {import('../types').Channel} Channel */
 
 export class Channels {
-    /** @param {import('./store.js').Store} store
-     * @param {import('./types').Changes} plain changes that take a look of one volume away */
+    /** @param {import('../store.js').Store} store
+     * @param {import('../types').Changes} plain changes that take a look of one volume away */
     constructor(store, plain) {
         this.store = store;
         this.plain = plain;

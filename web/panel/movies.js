@@ -1,8 +1,8 @@
 // movies.js - movies that the server writes: a turn, or the time steps.  All pages see how
 // far it is, and can cancel it or have the file; the one that ordered it gets it unasked.
 
-import {button, make, number, row, section, select} from './controls.js';
-import {known} from './store.js';
+import {button, make, number, row, section, select} from '../controls.js';
+import {known} from '../store.js';
 
 const SIZES = [['', 'as it is shown'], ['1280,720', '1280 x 720'], ['1920,1080', '1920 x 1080'], ['1080,1080', '1080 x 1080'],
     ['640,480', '640 x 480']];
@@ -10,14 +10,14 @@ const KINDS = [['turntable', 'a turn'], ['movie', 'the time steps']];
 const FRAMES = 120;
 const LOST = 'The viewer was started again: the movie that it was writing is lost.';
 
-/** @typedef {import('./types').Movie} Movie */
+/** @typedef {import('../types').Movie} Movie */
 
 /** @param {number} bytes */
 const sized = bytes => bytes < 1e6 ? `${Math.ceil(bytes / 1e3)} kB` : `${(bytes / 1e6).toFixed(1)} MB`;
 
 export class Movies {
     /** `times` has the steps that are played, `save` keeps a file.
-     * @param {import('./store.js').Store} store
+     * @param {import('../store.js').Store} store
      * @param {import('./time.js').Times} times
      * @param {(name: string, blob: Blob) => void} save */
     constructor(store, times, save) {

@@ -1,9 +1,9 @@
 // colors.js - colours at data values, in the place of a map with a name: the
 // recipe's colormap is then "60:#000000,255:#ff8800".
 
-import {apart, button, check, fill, ink, make, near, number, row, section, show} from './controls.js';
-import {mixed} from './look.js';
-import {known} from './store.js';
+import {apart, button, check, fill, ink, make, near, number, row, section, show} from '../controls.js';
+import {mixed} from '../look.js';
+import {known} from '../store.js';
 
 const FIRST = 5; // points that are taken of a map
 
@@ -27,9 +27,9 @@ export const painted = (map, value, color) => text([
 
 /** Another range, with which one's own colours go, as those of a map do.
  * @param {{low: number, high: number}} look
- * @param {import('./types').Keys} keys
- * @param {import('./types').Pair} to
- * @returns {{range: import('./types').Pair, colormap?: string}} */
+ * @param {import('../types').Keys} keys
+ * @param {import('../types').Pair} to
+ * @returns {{range: import('../types').Pair, colormap?: string}} */
 export function ranged({low, high}, {colormap}, [a, b]) {
     const own = ownColors(colormap), range = apart([a, b], 6);
     return own ? {range, colormap: text(own.map(([value, color]) =>
@@ -47,7 +47,7 @@ const turned = map => map.endsWith('_r') ? map.slice(0, -2) : `${map}_r`;
 export const upright = (map = '') => map === REVERSED ? '' : map.replace(/_r$/, '');
 
 export class Colors {
-    /** @param {import('./store.js').Store} store */
+    /** @param {import('../store.js').Store} store */
     constructor(store) {
         this.store = store;
         this.list = make('div', {});

@@ -3,14 +3,14 @@
 // The next step is asked for when the last one was painted, and no sooner than the speed
 // says: a slow link, or a large volume, plays slowly, and nothing waits in a row.
 
-import {button, make, number, row, section, select, show, slider} from './controls.js';
-import {known} from './store.js';
+import {button, make, number, row, section, select, show, slider} from '../controls.js';
+import {known} from '../store.js';
 
 const SPEED = 5;
 const LOOPS = [['loop', 'again and again'], ['once', 'once'], ['both', 'to and fro']];
 
 export class Times {
-    /** @param {import('./store.js').Store} store
+    /** @param {import('../store.js').Store} store
      * @param {() => void} update of the panel */
     constructor(store, update) {
         const {engine} = store;
@@ -115,7 +115,7 @@ export class Times {
     }
 
     /** `follow` keeps controls as the recipe is.
-     * @param {(each: (keys: Readonly<import('./types').Keys>) => void) => void} follow */
+     * @param {(each: (keys: Readonly<import('../types').Keys>) => void) => void} follow */
     section(follow) {
         const {store, engine} = this, {times, movies} = known(store.info);
         this.texts = [];
