@@ -75,7 +75,7 @@ const FOLDER_KEYS = [['o', 'open another volume'], ['n Shift+n', 'the next volum
  * @type {[name: string, text: string, patient?: string][]} */
 const GUIDE = [
     ['Look around', 'Drag the picture to turn it, with Shift to move it; the wheel zooms. A double click ' +
-        'turns around that point. "Camera" has the usual views, and a press of the cube\'s faces looks from there; ' +
+        'turns around that point. "Camera" has the usual views, and a press on a face of the cube looks from there; ' +
         '"Frame all" shows everything again. "Drag" below, "turns over the poles", tumbles the volume freely.',
     "Letters at the edges are the patient's sides: Right, Left, Anterior, Posterior, Superior, Inferior."],
     ['Window, level and looks', 'Drag with the right button: to the right for a wider window, up for a higher ' +

@@ -37,7 +37,7 @@ const canvas = make('canvas', {tabIndex: 0, role: 'img', 'aria-label': 'The volu
 const paint = context(canvas, {alpha: false});
 const said = make('p', {className: 'said', role: 'status', tabIndex: 0});
 const title = make('span', {className: 'faint grow'});
-const level = make('span', {className: 'faint'});
+const level = make('span', {className: 'faint level'});
 const figures = make('span', {className: 'faint grow'});
 const undo = button('Undo', 'Undo (z)', () => actions.undo());
 const redo = button('Redo', 'Redo (Shift+z)', () => actions.redo());
