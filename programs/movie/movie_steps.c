@@ -151,7 +151,8 @@ typedef struct value_pool {
     int64_t count;
     double *step;        /* values of the step that this rank has read */
     step_values given;   /* describes `step` */
-    int64_t quota;       /* values of one step, without its extremes */
+    int64_t quota;       /* values of one step */
+    bool sampled;        /* a step has more: two are its extremes */
     int group;           /* ranks that read a step together, one slab each */
     int channel;         /* of those that are drawn */
     snow_volume *volume; /* the step, if this rank has read all of it */
@@ -160,22 +161,38 @@ typedef struct value_pool {
     int64_t label_count;
 } value_pool;
 
-/* The distance between sampled values.  It has no common factor with rows and
- * slices, so that the sample does not follow one column of them. */
-static int64_t stride_of(const snow_volume_info *info, int64_t quota) {
-    int64_t slice = info->dims[0] * info->dims[1];
-    int64_t stride = (slice * info->dims[2] + quota - 1) / quota;
-    for (; stride > 1; stride++) {
-        int64_t a = stride, b = slice;
+/* Sampled are pieces of rows, about so long: whether neighbours are noise is
+ * part of a look.  All pieces of a step have one length; the last of a row ends
+ * with it, and may begin within the one before. */
+#define PIECE 64
+#define PIECE_MOST 512 /* rows of small steps stay whole */
+
+typedef struct pieces {
+    int64_t of_row, length;
+    int64_t stride; /* from one that is sampled to the next */
+} pieces;
+
+/* The stride has no common factor with the pieces of a slice, so that the
+ * sample does not follow one column of them. */
+static pieces pieces_of(const snow_volume_info *step, int64_t quota) {
+    const int64_t *n = step->dims;
+    const bool whole = n[0] <= PIECE_MOST && n[0] * n[1] * n[2] <= quota;
+    pieces p = {.of_row = whole ? 1 : (n[0] + PIECE - 1) / PIECE, .stride = 1};
+    p.length = (n[0] + p.of_row - 1) / p.of_row;
+    const int64_t slice = p.of_row * n[1];
+    const int64_t most = quota > p.length ? quota / p.length : 1;
+    p.stride = (slice * n[2] + most - 1) / most;
+    for (int64_t factor = 2; p.stride > 1 && factor != 1;) {
+        int64_t b = slice;
+        factor = p.stride;
         while (b) {
-            const int64_t rest = a % b;
-            a = b;
+            const int64_t rest = factor % b;
+            factor = b;
             b = rest;
         }
-        if (a == 1)
-            return stride;
+        p.stride += factor != 1;
     }
-    return 1;
+    return p;
 }
 
 /* Reads a stored value as a double. */
@@ -198,17 +215,57 @@ static void pool_slab(value_pool *pool, const snow_volume_info *whole,
                       int64_t first, const snow_volume *volume) {
     const snow_volume_info *info = snow_volume_get_info(volume);
     const void *voxels = snow_volume_voxels(volume);
-    int64_t slice = info->dims[0] * info->dims[1];
-    int64_t begin = first * slice, end = begin + slice * info->dims[2];
-    int64_t stride = stride_of(whole, pool->quota);
-    int64_t at = (begin + stride - 1) / stride;
+    const pieces p = pieces_of(whole, pool->quota);
+    const int64_t width = info->dims[0], above = first * info->dims[1];
+    const int64_t end = (above + info->dims[1] * info->dims[2]) * p.of_row;
+    int64_t piece = (above * p.of_row + p.stride - 1) / p.stride * p.stride;
     snow_volume_statistics ends = {.size = sizeof ends};
     snow_volume_get_statistics(volume, &ends);
     pool->given = (step_values){0, {ends.min, ends.max}};
-    for (; at < pool->quota && at * stride < end; at++)
-        pool->step[pool->given.count++] =
-            info->slope * native(voxels, info->type, at * stride - begin) +
-            info->intercept;
+    for (; piece < end; piece += p.stride) {
+        const int64_t last = width - p.length, x = piece % p.of_row * p.length;
+        const int64_t at =
+            (piece / p.of_row - above) * width + (x < last ? x : last);
+        for (int64_t i = 0; i < p.length; i++)
+            pool->step[pool->given.count++] =
+                info->slope * native(voxels, info->type, at + i) +
+                info->intercept;
+    }
+}
+
+/* Whether the look of a step is not that of a field by more than its values
+ * (snow_volume_may_be_field of the library): by its type, which the pool has
+ * not, and by its format. */
+static bool is_no_field(const snow_volume_info *step, bool slice) {
+    static const char *const images[] = {"mrc", "tiff", "zarr"};
+    bool image = false;
+    for (size_t n = 0; n < sizeof images / sizeof *images; n++)
+        image = image || strcmp(step->format, images[n]) == 0;
+    return step->medical || *step->modality || (image && !*step->quantity) ||
+           (snow_type_size(step->type) <= 2 && !(slice && *step->value_unit));
+}
+
+/* The sides of a pool with the shape of a step: a block, whose rows are pieces,
+ * a slice or a row.  From 6 rows on it is no stack of few large slices, which
+ * would be drawn as one.  What lacks to a side is repeated. */
+static void shape_pool(const snow_volume_info *step, value_pool *pool,
+                       int64_t dims[3]) {
+    int axes = 0;
+    for (int i = 0; i < 3; i++)
+        axes += step->dims[i] > 1;
+    const int64_t length = axes == 3 ? pieces_of(step, pool->quota).length : 1;
+    const int64_t rows = pool->count / length, least = rows < 12 ? 2 : 6;
+    int64_t side = axes == 3 ? least : axes;
+    while (axes == 3 && rows % side && side < 10 * least)
+        side++;
+    if (axes == 3 && rows % side)
+        side = least;
+    side = side ? side : 1;
+    for (int64_t n = 0; pool->count % (length * side); n++)
+        pool->values[pool->count++] = pool->values[n];
+    dims[0] = axes == 3 ? length : pool->count / side;
+    dims[1] = side;
+    dims[2] = pool->count / (dims[0] * side);
 }
 
 /* Makes the transfer function for a volume that consists of the pool and has
@@ -219,19 +276,21 @@ static int look_at_pool(render_state *s, const snow_volume_info *step,
                         value_pool *pool) {
     snow_volume_info info = {
         .size = sizeof info, .dims = {1, 1, 1}, .type = SNOW_TYPE_FLOAT64};
-    int axes = 0;
-    /* Values alone do not show that this is no computed field. */
-    if (step->type < SNOW_TYPE_FLOAT32 || step->medical ||
-        strcmp(step->format, "mrc") == 0)
+    shape_pool(step, pool, info.dims);
+    if (is_no_field(step, info.dims[2] == 1))
         snprintf(info.modality, sizeof info.modality, "OT");
-    for (int i = 0; i < 3; i++)
-        axes += step->dims[i] > 1;
-    for (int i = 1; i < axes; i++)
-        info.dims[i] = 2;
-    int64_t across = info.dims[1] * info.dims[2];
-    while (pool->count % across)
-        pool->values[pool->count++] = NAN;
-    info.dims[0] = pool->count / across;
+    info.whole = step->whole;
+    info.eight_bits = step->eight_bits;
+    memcpy(info.value_unit, step->value_unit, sizeof info.value_unit);
+    if (step->type == SNOW_TYPE_FLOAT32 && step->slope == 1 &&
+        step->intercept == 0) {
+        float *values = (float *)pool->values; /* in place, from the front */
+        for (int64_t i = 0; i < pool->count; i++) {
+            const float value = (float)pool->values[i];
+            memcpy(values + i, &value, sizeof value);
+        }
+        info.type = SNOW_TYPE_FLOAT32;
+    }
     snow_volume *volume = NULL;
     snow_status status =
         snow_volume_wrap(s->context, &info, pool->values, &volume);
@@ -341,8 +400,7 @@ static int read_step(shot_renderer *shots, const movie_shot *shot,
     return done;
 }
 
-/* Appends what a rank has read; the extremes of a step follow its last
- * values. */
+/* Appends what a rank has read, and finds the extremes of its step. */
 static int append_share(value_pool *pool, int rank, double ends[2]) {
     double *to = pool->values + pool->count;
     step_values given = pool->given;
@@ -422,10 +480,13 @@ static int append_step(render_state *s, const movie_shot *shot, int group,
                        value_pool *pool) {
     double ends[2] = {NAN, NAN};
     int done = CONTINUE;
+    const int64_t first = pool->count;
     for (int member = 0; member < pool->group && done == CONTINUE; member++)
         done = append_share(pool, group * pool->group + member, ends);
-    pool->values[pool->count++] = ends[0];
-    pool->values[pool->count++] = ends[1];
+    if (pool->sampled && pool->count >= first + 2) {
+        pool->values[first] = ends[0];
+        pool->values[pool->count - 1] = ends[1];
+    }
     if (done == CONTINUE && pool->labelled && ends[0] < ends[1])
         done = append_labels(s, shot, group * pool->group, pool);
     return done;
@@ -480,6 +541,8 @@ static int pool_steps(const shot_list *list, shot_renderer *shots,
     done = process_agree(done);
     if (done == CONTINUE)
         pool->group = choose_group(shots->state.opts, &first, list->count);
+    pool->sampled =
+        done == CONTINUE && pieces_of(&first, pool->quota).stride > 1;
     int groups = done == CONTINUE ? process_ranks() / pool->group : 1;
     for (int64_t i = 0; i < list->count && done == CONTINUE; i += groups) {
         char line[96];
@@ -509,9 +572,9 @@ static int look_at_steps(const shot_list *list, shot_renderer *shots,
                                    (opts->preset ? labels : !opts->tf)};
     if (pool.quota < STEP_VALUES)
         pool.quota = STEP_VALUES;
-    int64_t capacity = pool.quota + 2;
-    pool.values =
-        malloc((size_t)(capacity * (list->count + 1)) * sizeof *pool.values);
+    const int64_t capacity = pool.quota;
+    const int64_t all = capacity * (list->count + 1) + 6 * PIECE_MOST;
+    pool.values = malloc((size_t)all * sizeof *pool.values);
     pool.labels = malloc(2 * LABELS_MOST * sizeof *pool.labels);
     int done = process_agree(pool.values && pool.labels ? CONTINUE
                                                         : steps_fail_memory());
