@@ -246,12 +246,20 @@ static void build_grey(snow_transfer_builder *builder, const char *name,
     builder->colors[1] = (snow_color_point){high, light, light, light};
 }
 
-/* One slice is drawn as a picture that shows everything but its darkest values.
- * Several slices are solid but let some light through. */
-static void build_solid(const snow_histogram_split *p, bool slice,
-                        snow_scale scale, snow_transfer_builder *builder) {
+/* One slice is drawn as a picture that shows everything but its darkest values,
+ * which are air around a body; of measures it shows all.  Several slices are
+ * solid but let some light through. */
+static void build_solid(const snow_histogram *histogram,
+                        const snow_histogram_split *p, bool slice,
+                        snow_transfer_builder *builder) {
+    const snow_scale scale = histogram->scale;
     build_grey(builder, "dim-grey", p->low, p->high, 0, LIGHTEST);
     builder->unshaded = true;
+    if (slice && snow_are_measures(histogram)) {
+        snow_transfer_builder_add_opacity(builder, p->low, 1);
+        snow_transfer_builder_add_opacity(builder, p->high, 1);
+        return;
+    }
     snow_transfer_builder_add_opacity(builder, p->low, 0);
     if (slice) {
         snow_transfer_builder_add_opacity(
@@ -268,21 +276,21 @@ static void build_solid(const snow_histogram_split *p, bool slice,
 }
 
 /* The number of axes with one voxel: 1 is a slice, 2 a row. */
-static int axes_of_one(const snow_histogram *histogram) {
+static int axes_of_one(const snow_volume *volume) {
     snow_extent part;
-    snow_volume_find_extent(histogram->volume, &part);
+    snow_volume_find_extent(volume, &part);
     return (part.dims[0] == 1) + (part.dims[1] == 1) + (part.dims[2] == 1);
 }
 
 /* Two to five slices, each of 16 times as many rows and columns, are no more of
  * a body than one: shading would show their noise. */
-static bool is_slice(const snow_histogram *histogram) {
+bool snow_is_slice(const snow_volume *volume) {
     snow_extent part;
-    snow_volume_find_extent(histogram->volume, &part);
+    snow_volume_find_extent(volume, &part);
     const int64_t *n = part.dims;
     const int64_t least =
         n[0] < n[1] ? (n[0] < n[2] ? n[0] : n[2]) : (n[1] < n[2] ? n[1] : n[2]);
-    return axes_of_one(histogram) == 1 ||
+    return axes_of_one(volume) == 1 ||
            (least > 1 && least <= 5 &&
             (n[0] >= 16 * least) + (n[1] >= 16 * least) +
                     (n[2] >= 16 * least) ==
@@ -337,7 +345,7 @@ static snow_status find_field(const snow_histogram *histogram,
                               bool *is_signed) {
     double reach;
     bool is_scan;
-    *field = snow_is_field(histogram) && axes_of_one(histogram) == 0 &&
+    *field = snow_is_field(histogram) && axes_of_one(histogram->volume) == 0 &&
              !look->base && !look->preset;
     if (!*field)
         return SNOW_STATUS_OK;
@@ -470,7 +478,7 @@ static snow_status split_within_window(const snow_histogram *histogram,
     double window[2];
     bool is = false;
     if (look->range == SNOW_RANGE_AUTO && !*histogram->volume->info.modality &&
-        !is_slice(histogram))
+        !snow_is_slice(histogram->volume))
         SNOW_TRY(
             snow_window_of(histogram, builder, &window[0], &window[1], &is));
     SNOW_TRY(snow_histogram_split_at(histogram, is ? window : NULL, out));
@@ -491,7 +499,7 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
         build_constant(histogram, builder);
         return SNOW_STATUS_OK;
     }
-    bool slice = is_slice(histogram), shown;
+    bool slice = snow_is_slice(histogram->volume), shown;
     int preset = -1;
     p.low = snow_hounsfield_floor(histogram, p.low);
     if (slice)
@@ -518,10 +526,10 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
         return SNOW_STATUS_OK;
     }
     if (slice || p.fills_volume) {
-        build_solid(&p, slice, scale, builder);
+        build_solid(histogram, &p, slice, builder);
         return SNOW_STATUS_OK;
     }
-    builder->unshaded = axes_of_one(histogram) > 1;
+    builder->unshaded = axes_of_one(histogram->volume) > 1;
     double start = p.with_faint
                        ? p.faint
                        : snow_between_on(scale, p.background, p.threshold, 0.6);

@@ -21,6 +21,12 @@ bool snow_is_field(const snow_histogram *histogram) {
            snow_volume_may_be_field(&histogram->volume->info);
 }
 
+bool snow_are_measures(const snow_histogram *histogram) {
+    const snow_volume_info *info = &histogram->volume->info;
+    return snow_is_field(histogram) ||
+           (*info->value_unit && snow_volume_may_be_field(info));
+}
+
 /* Voxels of either sign that are left out of a field's reach, as those of noise
  * and of a few sources are. */
 #define FAR 0.002

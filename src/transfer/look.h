@@ -21,6 +21,7 @@ typedef struct snow_transfer_builder {
     char range_note[64];  /* how the range was chosen, for messages; or "" */
     double low, high;     /* the range of data values */
     bool unshaded;        /* for pictures without shading */
+    bool slice;           /* one slice, which has no surfaces to shade */
     snow_scale scale;     /* on which points are joined */
     bool around_0;        /* half of the points stays at 0 */
     snow_color_point *colors;
@@ -158,8 +159,16 @@ snow_status snow_transfer_builder_points(const snow_look *points,
 double snow_transfer_builder_place(const snow_transfer_builder *builder,
                                    double low, double high, double share);
 
+/* Whether a volume is one slice, or a few large ones, which are drawn as one.
+ */
+bool snow_is_slice(const snow_volume *volume);
+
 /* Whether values have fractions, where a field may be. */
 bool snow_is_field(const snow_histogram *histogram);
+
+/* Whether they are measures, all of which a slice shows: those of a field, or
+ * with a unit. */
+bool snow_are_measures(const snow_histogram *histogram);
 
 /* Whether they are below 0, but for a few, and rise to a background.  Errors:
  * SNOW_STATUS_NO_MEMORY, those of the transport. */

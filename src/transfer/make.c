@@ -282,6 +282,7 @@ static snow_status build_look(const snow_histogram *histogram,
                               snow_transfer_builder *builder) {
     const snow_look *points = points_of(look);
     SNOW_TRY(fill_builder(histogram, look, builder));
+    builder->slice = snow_is_slice(histogram->volume);
     if (look->range != SNOW_RANGE_AUTO) {
         double low, high;
         bool data = points && points->domain == SNOW_DOMAIN_DATA;
@@ -339,7 +340,8 @@ static snow_status build(const snow_volume *volume,
     snow_status status = snow_transfer_set_gradient_opacity(
         transfer, own ? look->gradient_opacities : builder->gradients,
         own ? look->gradient_opacity_count : builder->gradient_count);
-    transfer->unshaded = builder->unshaded && !look->opacities;
+    transfer->unshaded =
+        builder->slice || (builder->unshaded && !look->opacities);
     transfer->preset = builder->preset;
     transfer->white = look->white;
     if (status == SNOW_STATUS_OK && builder->scale.log)

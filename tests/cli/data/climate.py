@@ -29,6 +29,16 @@ def look_of(*words):
     return next((w.split()[-2] for w in words if ".." in w), line), "not shaded" in line
 
 
+def picture(*words):
+    """Colours that are not premultiplied, and opacities."""
+    status, told = run(*words, "-o", "p.npy", "-y", "--background", "none",
+                       "--no-labels")
+    check("drawn: " + " ".join(map(str, words)), status == 0, told)
+    pixels = np.load("p.npy")
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return pixels[..., :3] / pixels[..., 3:], pixels[..., 3]
+
+
 def write(path, name, values, axes, kind="f4", scale=None, **attributes):
     """`axes`: of each dimension its name, coordinates and attributes."""
     with netCDF4.Dataset(path, "w") as f:
@@ -60,5 +70,37 @@ check("a field is a veil in colours", one == ("viridis", True), one)
 for steps in "1", "0:3":
     found = look_of("movie", "cloud.nc", "--time", steps, "-o", "m%d.png")
     check(f"a movie of steps {steps} has the look of one", found == one, found)
+
+# One slice: all that the file has is drawn, and nothing that is missing.
+LAT, LON = axis("lat", 1, 60, "degrees_north"), axis("lon", 1, 80, "degrees_east")
+y, x = np.mgrid[:60, :80]
+SEA = np.ma.masked_where((x - 40) ** 2 + (y - 30) ** 2 < 200,
+                         271.3 + 30 * np.sin(np.pi * y / 59) + 0.01 * x)
+for kind, scale in ("f4", None), ("i2", 0.01):
+    write("sea.nc", "tos", SEA, (LAT, LON), kind, scale, units="K")
+    for words in (), ("-c", "turbo", "--range", "271,305"):
+        opacity = picture("render", "sea.nc", "-s", "320x240", "--fit", "volume", *words)[1]
+        inside = opacity[np.ix_(*(np.flatnonzero((opacity > 0.5).any(1 - i))
+                                  for i in (0, 1)))]
+        share = (inside > 0.99).mean()
+        wanted = 1 - np.ma.getmaskarray(SEA).mean()
+        check(f"{kind}: water is drawn, land is not", abs(share - wanted) < 0.02,
+              f"{share}, not {wanted}")
+
+# A map is not shaded, whatever options give: grey is the value itself.
+write("ramp.nc", "v", np.broadcast_to(0.2 + 0.6 * np.arange(80) / 79, (60, 80)),
+      (LAT, LON), units="K")
+for words in (("--opacity", "0:1,1:1"), ("--opacity", "0:1,1:1", "--time", "0"),
+              ("--preset", "linear", "--opacity", "0:1,1:1")):
+    colours, opacity = picture("render", "ramp.nc", "-s", "320x240", "-c", "grey",
+                               "--range", "0,1", *words)
+    row = colours[120, opacity[120] > 0.99, 0]
+    wanted = np.linspace(0.2, 0.8, len(row))
+    apart = np.abs(row - wanted)[4:-4].max()
+    check("colours of a map are those of the bar", apart < 0.02, apart)
+colours, opacity = picture("render", "ramp.nc", "-s", "320x240", "-c", "grey", "--range",
+                           "0,1", "--opacity", "0:1,1:1", "--shade", "phong")
+row = colours[120, opacity[120] > 0.99, 0]
+check("--shade phong shades it", np.abs(row - np.linspace(0.2, 0.8, len(row))).max() > 0.02)
 
 sys.exit(failures > 0)
