@@ -527,15 +527,13 @@ export class Slices {
         if (!info.slices || (name === layout && name !== 'slice'))
             return;
         this.views.classList.remove('alone');
-        this.store.part();
-        if (name === 'picture') {
-            this.store.set({slices: null});
-            return;
-        }
         const {large = 0, ...own} = keys ?? this.last ?? {range: apart(info.window, 5),
             at: world(info, info.dims.map(count => Math.floor(count / 2)))};
         const next = name === 'slice' && layout === 'slice' ? (large + 1) % this.panes.length : large;
-        this.store.set({slices: {...own, layout: name === 'beside' ? undefined : name, ...next && {large: next}}});
+        this.store.part();
+        this.store.set({slices: name === 'picture' ? null
+            : {...own, layout: name === 'beside' ? undefined : name, ...next && {large: next}}});
+        this.store.part(); // what is done to slices at once is undone alone
     }
 
     /** @param {number[]} index */
