@@ -27,7 +27,7 @@ from ._warnings import warn
 
 INSTALL = "pip install anywidget"
 _WEB = pathlib.Path(__file__).parent / "web"
-_IMPORT = re.compile(r"(?ms)^import \{([^}]*)\}\s+from '\./(\w+)\.js';\n")
+_IMPORT = re.compile(r"(?ms)^import \{([^}]*)\}\s+from '\.[./]*/(?:panel/)?(\w+)\.js';\n")
 
 
 def _imports(text: str) -> list[tuple[str, list[str]]]:
