@@ -314,9 +314,8 @@ const option_row option_table[] = {
      "A up to, not including, B; the point of --ortho in the world (default: "
      "the middle; of several all)"},
     {"slab", 0, "THICKNESS[:max|mean|min]", TOPIC_MORE, SLICE, read_text, FIELD(thickness), 0, 0,
-     "show the maximum, mean or minimum of the slices whose middles lie within half a "
-     "thickness of this one's: a length with its unit, such as 10mm:mean, or a number of "
-     "slices (default max; without it, one slice)"},
+     "show the maximum (default), mean or minimum of the slices within half a "
+     "thickness: 10mm:mean, or a number of slices"},
     {"grid", 0, "CxR", TOPIC_MORE, SLICE, read_text, FIELD(grid), 0, 0, "draw C times R slices in one picture, with their numbers, spread evenly over those that "
      "show something, or over --at A:B"},
     {"ortho", 0, NULL, TOPIC_MORE, SLICE, read_flag, FIELD(ortho), 0, 0, "draw the axial, coronal and sagittal slice through the point of --at "

@@ -112,11 +112,13 @@ check('what the kernel does not offer is hidden',
     await page.locator('#one [title$="this picture (c)"]:visible').count() === 1);
 check('no link leads here', await page.locator('#one [title^="Copy a link"]').count() === 0);
 await page.locator('#one summary', {hasText: 'Presets'}).click();
+await page.evaluate(`${place('one')}.shadowRoot.querySelectorAll('details:has(> div > .presets)')
+    .forEach(group => { group.open = true; })`);
 await page.waitForFunction(`[...${place('one')}.shadowRoot.querySelectorAll('.presets img')]
     .filter(image => !image.hidden).length > 3`, null, {timeout: 60000});
 check('presets show themselves', true);
-for (const [name, preset] of [['ct-bone:', 'ct-bone'], ['automatic:', null]]) {
-    await page.locator(`#one .presets button[aria-label^="Preset ${name}"]`).click();
+for (const [name, preset] of [['Bone', 'ct-bone'], ['Automatic', null]]) {
+    await page.locator(`#one .presets button[aria-label^="${name}:"]`).first().click();
     const chosen = await page.waitForFunction(`(${place('two')}.snowglass.recipe.keys.preset ?? null) ===
         ${JSON.stringify(preset)}`, null, {timeout: 20000}).catch(() => null); // by way of the kernel
     check(`a click chooses ${name}`, chosen);

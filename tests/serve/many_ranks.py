@@ -137,6 +137,8 @@ def same_as_one(exact):
         infos.append(pages[1].receive_text("info"))
         for info in infos:
             info.pop("instance")  # each viewer has one
+            check("movies are made by one process",
+                  (info.pop("movies") is None) == (info is infos[0]), infos)
         check("all is told of the volume alike", infos[0] == infos[1], infos)
         for page in pages:
             page.rest(9, size=[SIDE, SIDE], mode="over", azimuth=25, elevation=10,

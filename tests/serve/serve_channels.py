@@ -156,7 +156,7 @@ def limits():
     for limit, module, name in (("SNOW_CHANNELS_MAX", "channels.js", "CHANNELS_MOST"),
                                 ("SNOW_CLIPS_MAX", "clip.js", "PLANES_MOST")):
         with open(os.path.join(top, "include", "snowglass", "volume.h")) as header, \
-                open(os.path.join(top, "web", module)) as page:
+                open(os.path.join(top, "web", "panel", module)) as page:
             known = re.findall(rf"#define {limit} (\d+)", header.read())
             used = re.findall(rf"const {name} = (\d+);", page.read())
         check(f"{name} is {limit}", known == used and len(used) == 1, (known, used))
