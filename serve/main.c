@@ -359,9 +359,9 @@ static void close_all(viewer *v) {
     packer_free(v->pack);
     drawing_close(&v->drawing);
     folder_free(v->folder);
+    listener_free(v->listener); /* tells the job of the pages that it closes */
     job_free(v->job);
     json_decref(v->drawing.offer);
-    listener_free(v->listener);
     outbox_free(v->box);
     state_free(v->state);
     live_free(v->live);

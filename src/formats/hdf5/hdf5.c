@@ -88,7 +88,8 @@ static snow_status read_region(const hdf5_file *file, const hdf5_set *set,
                                snow_volume *volume) {
     hsize_t first[HDF5_MOST_AXES], count[HDF5_MOST_AXES] = {1, 1, 1, 1, 1};
     if (set->constant) { /* of type float64 */
-        for (uint64_t i = 0; i < region->all / sizeof(double); i++)
+        const int64_t *box = region->count;
+        for (int64_t i = 0; i < box[0] * box[1] * box[2]; i++)
             ((double *)volume->owned)[i] = set->value;
         return SNOW_STATUS_OK;
     }
