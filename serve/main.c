@@ -46,7 +46,7 @@ typedef struct viewer {
     renderer *renderer;
     pthread_t thread; /* of the listener */
     drawing drawing;
-    bool lists; /* a folder, of which a page chooses a volume */
+    bool lists;     /* a folder, of which a page chooses a volume */
     live *live;     /* in its place; or NULL */
     folder *folder; /* of which pages choose a volume; or NULL */
     movie_job *job; /* or NULL */

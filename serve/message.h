@@ -76,9 +76,10 @@ typedef enum frame_kind {
  *    0 "SNW1" | 4 n | 8 level, kind, pane, part | 12 bytes of all parts
  *   16 width  | 20 height | 24 microseconds of rendering | 28 of packing
  *
- * Most pictures are whole: 0 is their part.  On a thin link the one at rest comes
- * in several, of which the first is FRAME_FIRST and the others FRAME_NEXT, each
- * with this head; a picture that follows ends it before its end. */
+ * Most pictures are whole: 0 is their part.  On a thin link the one at rest
+ * comes in several, of which the first is FRAME_FIRST and the others
+ * FRAME_NEXT, each with this head; a picture that follows ends it before its
+ * end. */
 typedef struct frame_head {
     uint32_t n;
     int level, kind, pane;
@@ -113,8 +114,9 @@ void set_log_note(set_log *log, uint32_t n, uint32_t revision);
 /* The newest message that a revision has in it; 0: none. */
 uint32_t set_log_n(const set_log *log, uint32_t revision);
 
-/* What a text of the state begins with; %-10u is the step, of which a page's own
- * is put in its place when it is sent: its newest set that the state has. */
+/* What a text of the state begins with; %-10u is the step, of which a page's
+ * own is put in its place when it is sent: its newest set that the state has.
+ */
 #define STATE_HEAD "{\"t\":\"state\",\"step\":"
 void state_text_set_step(unsigned char *text, uint32_t step);
 

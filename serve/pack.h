@@ -39,7 +39,8 @@ picture *packer_put(packer *p, picture *made);
  * processors, would delay it. */
 void packer_wait_for_draft(packer *p);
 
-/* Seconds that the last draft was packed, for each of its pixels; 0: none yet. */
+/* Seconds that the last draft was packed, for each of its pixels; 0: none yet.
+ */
 double packer_pixel_seconds(packer *p);
 
 /* Until all are packed, which are for the renderer to free: no picture before

@@ -1,5 +1,5 @@
-/* recipe_file.h - the recipe that pages begin with; that of the picture at rest,
- * as a file for --config. */
+/* recipe_file.h - the recipe that pages begin with; that of the picture at
+ * rest, as a file for --config. */
 #ifndef RECIPE_FILE_H
 #define RECIPE_FILE_H
 

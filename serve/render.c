@@ -31,8 +31,8 @@ struct renderer {
     char replaced[IDENTITY_BYTES]; /* the file by which it was, as was said */
     bool reopened;
     renderer_opener opener; /* of another volume; NULLs: there is none */
-    double radius; /* of the volume that was read last */
-    order_fn *order; /* writes movies; NULL: nobody does */
+    double radius;          /* of the volume that was read last */
+    order_fn *order;        /* writes movies; NULL: nobody does */
     void *order_user;
 };
 
@@ -177,7 +177,8 @@ static outcome draw_emptied(renderer *r, int level, const json_t *recipe) {
     outcome o = try_state(r, level, recipe, true);
     say_now(o.done == SNOW_STATUS_NO_MEMORY);
     json_decref(r->vain);
-    r->vain = o.done == SNOW_STATUS_NO_MEMORY ? shortage_need(recipe, level) : NULL;
+    r->vain =
+        o.done == SNOW_STATUS_NO_MEMORY ? shortage_need(recipe, level) : NULL;
     return o;
 }
 
@@ -204,8 +205,7 @@ static outcome draw_state(renderer *r, int level, const json_t *recipe,
 }
 
 static bool reopens(renderer *r, const char *what) {
-    if (strcmp(what, "reopen") != 0 || process_ranks() > 1 ||
-        r->drawing->waits)
+    if (strcmp(what, "reopen") != 0 || process_ranks() > 1 || r->drawing->waits)
         return false;
     make_room(r);
     identity_of(r->drawing->opts.operands[0], r->drawing->identity);

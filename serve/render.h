@@ -28,8 +28,9 @@ typedef struct renderer_opener {
 typedef void order_fn(void *user, drawing *d, viewer_state *s,
                       const viewer_question *question);
 
-/* Takes over the drawing, and has its orders filled (NULL: by nobody).  `opener`: or NULL, where there is nothing else to be
- * opened.  NULL: no memory. */
+/* Takes over the drawing, and has its orders filled (NULL: by nobody).
+ * `opener`: or NULL, where there is nothing else to be opened.  NULL: no
+ * memory. */
 renderer *renderer_new(drawing *d, viewer_state *s, outbox *box, packer *pack,
                        const renderer_opener *opener, order_fn *order,
                        void *order_user);

@@ -107,8 +107,8 @@ void state_set_watchers(viewer_state *s, int count) {
 bool state_ask(viewer_state *s, uint64_t client, json_t *tree) {
     const char *what = json_string_value(json_object_get(tree, "what"));
     bool waits = what && strcmp(what, "thumbnail") == 0;
-    bool slow = what && (strcmp(what, "histogram") == 0 ||
-                         strcmp(what, "times") == 0);
+    bool slow =
+        what && (strcmp(what, "histogram") == 0 || strcmp(what, "times") == 0);
     pthread_mutex_lock(&s->lock);
     const json_t *pane = json_object_get(tree, "pane");
     viewer_question *same = NULL; /* a thumbnail of the same pane */

@@ -118,8 +118,8 @@ bool state_crop_is_alone(viewer_state *s);
  * for the size of the window; false where a newer one is there. */
 bool state_take_back(viewer_state *s, uint32_t revision, const json_t *drawn);
 
-/* Another volume's recipe, which is taken over, in the place of the state but for
- * the size of the window. */
+/* Another volume's recipe, which is taken over, in the place of the state but
+ * for the size of the window. */
 void state_replace(viewer_state *s, json_t *recipe);
 
 /* A copy of the whole recipe. */

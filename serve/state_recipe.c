@@ -238,8 +238,8 @@ outgoing *state_message(viewer_state *s, uint64_t client, uint64_t except) {
     if (made) {
         made->length = (size_t)snprintf(
             (char *)made->bytes, most,
-            STATE_HEAD "%-10u,\"touched\":%s,\"keys\":%s,\"computed\":%s}",
-            0U, touched ? "true" : "false", keys, others);
+            STATE_HEAD "%-10u,\"touched\":%s,\"keys\":%s,\"computed\":%s}", 0U,
+            touched ? "true" : "false", keys, others);
         made->is_text = true;
         made->topic = MESSAGE_STATE;
         made->client = client;

@@ -139,8 +139,8 @@ static double predict(const speed_row *one, int threads) {
     const double share = 1.0 / threads, work = one->least - one->serial;
     return one->serial < 0 || one->longest > work / 2
                ? NAN
-               : one->least / (one->serial + work * share +
-                               one->longest * (1 - share));
+               : one->least /
+                     (one->serial + work * share + one->longest * (1 - share));
 }
 
 /* The same as it was measured. */

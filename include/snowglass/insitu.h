@@ -90,8 +90,8 @@ SNOW_API snow_status snow_insitu_place_bricks(snow_insitu *insitu,
 
 /* Where ghost voxels come from. */
 typedef enum snow_ghosts {
-    SNOW_GHOSTS_AUTO = 0,  /* the bricks' halos, else from their owners */
-    SNOW_GHOSTS_NONE       /* outermost voxels are repeated: faint seams */
+    SNOW_GHOSTS_AUTO = 0, /* the bricks' halos, else from their owners */
+    SNOW_GHOSTS_NONE      /* outermost voxels are repeated: faint seams */
 } snow_ghosts;
 
 /* Where the work is done. */

@@ -12,19 +12,19 @@
 
 /* How the volume is partitioned. */
 typedef enum snow_partition {
-    SNOW_PARTITION_AUTO = 0,  /* counted; bricks where slabs would be thin */
-    SNOW_PARTITION_EQUAL,     /* the paper's slabs: as equal as can be */
-    SNOW_PARTITION_COUNTED,   /* slabs of about equal cost */
-    SNOW_PARTITION_BRICKS     /* boxes of equally many interesting voxels */
+    SNOW_PARTITION_AUTO = 0, /* counted; bricks where slabs would be thin */
+    SNOW_PARTITION_EQUAL,    /* the paper's slabs: as equal as can be */
+    SNOW_PARTITION_COUNTED,  /* slabs of about equal cost */
+    SNOW_PARTITION_BRICKS    /* boxes of equally many interesting voxels */
 } snow_partition;
 
 /* How local images are combined. */
 typedef enum snow_combine {
-    SNOW_COMBINE_AUTO = 0,  /* by the number of ranks and the image's size */
-    SNOW_COMBINE_TREE,      /* the paper's hierarchy */
-    SNOW_COMBINE_SWAP,      /* binary swap */
-    SNOW_COMBINE_DIRECT,    /* direct send */
-    SNOW_COMBINE_RADIX      /* radix-k */
+    SNOW_COMBINE_AUTO = 0, /* by the number of ranks and the image's size */
+    SNOW_COMBINE_TREE,     /* the paper's hierarchy */
+    SNOW_COMBINE_SWAP,     /* binary swap */
+    SNOW_COMBINE_DIRECT,   /* direct send */
+    SNOW_COMBINE_RADIX     /* radix-k */
 } snow_combine;
 
 /* How ranks share the work of a picture. */
@@ -32,8 +32,8 @@ typedef struct snow_ranks_options {
     size_t size;
     snow_partition cut;     /* the partition of the volume */
     snow_combine combining; /* of the local images */
-    int radix;      /* of SNOW_COMBINE_RADIX, 2 to 64; 0: chosen */
-    int pixel_bits; /* 8: levels travel to rank 0; 0: floats */
+    int radix;              /* of SNOW_COMBINE_RADIX, 2 to 64; 0: chosen */
+    int pixel_bits;         /* 8: levels travel to rank 0; 0: floats */
     bool turns;     /* parts get ghost voxels for all directions at this zoom */
     bool scattered; /* each rank's image has its own pixels; they add up */
     const snow_transfer *transfer; /* for snow_ranks_open, instead of a look */

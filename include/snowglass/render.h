@@ -26,7 +26,7 @@ typedef enum snow_method {
 /* How the places of interesting voxels are written: the paper's section 3.2.
  * The picture is the same for all. */
 typedef enum snow_encoding {
-    SNOW_ENCODING_AUTO = 0,  /* by measured density and run length */
+    SNOW_ENCODING_AUTO = 0, /* by measured density and run length */
     SNOW_ENCODING_CRS,
     SNOW_ENCODING_BITMAP,
     SNOW_ENCODING_RLE
@@ -71,10 +71,10 @@ typedef enum snow_shade { SNOW_SHADE_PHONG = 0, SNOW_SHADE_NONE } snow_shade;
 
 /* From where the light comes (docs/model.md, section 4). */
 typedef enum snow_light {
-    SNOW_LIGHT_AUTO = 0,  /* key; a direction where angles are not 0 */
-    SNOW_LIGHT_KEY,       /* 0.65 from 25 degrees left, 35 up; 0.35 head */
-    SNOW_LIGHT_HEAD,      /* from the viewer */
-    SNOW_LIGHT_DIRECTION  /* from light_azimuth and light_elevation */
+    SNOW_LIGHT_AUTO = 0, /* key; a direction where angles are not 0 */
+    SNOW_LIGHT_KEY,      /* 0.65 from 25 degrees left, 35 up; 0.35 head */
+    SNOW_LIGHT_HEAD,     /* from the viewer */
+    SNOW_LIGHT_DIRECTION /* from light_azimuth and light_elevation */
 } snow_light;
 
 /* What becomes of the values that a ray meets (docs/modes.md). All modes but
@@ -83,11 +83,11 @@ typedef enum snow_mode {
     SNOW_MODE_OVER = 0, /* composited front to back */
     SNOW_MODE_MIP,      /* the largest value, as a colour */
     SNOW_MODE_MINIP,    /* the smallest value, as a colour */
-    SNOW_MODE_MEAN, /* the mean, one channel; NaN where a ray meets none */
-    SNOW_MODE_SUM,  /* the integral over the ray's length, divided by
-                       opacity_length: by default in smallest spacings */
-    SNOW_MODE_ISO   /* the first surface where a value reaches `iso` (the
-                       isovalue), shaded */
+    SNOW_MODE_MEAN,     /* the mean, one channel; NaN where a ray meets none */
+    SNOW_MODE_SUM,      /* the integral over the ray's length, divided by
+                           opacity_length: by default in smallest spacings */
+    SNOW_MODE_ISO       /* the first surface where a value reaches `iso` (the
+                           isovalue), shaded */
 } snow_mode;
 
 /* What a picture is made with. Defaults in brackets where they are not 0. */
@@ -143,7 +143,7 @@ typedef struct snow_stats {
     double seconds_frame, cpu_frame; /* the picture; in processor time */
     uint64_t kept_bytes, kept_most;  /* encodings along other slice axes:
                                         what is kept, and what may be */
-    double seconds_shared; /* one thread: in work that more would share */
+    double seconds_shared;  /* one thread: in work that more would share */
     double seconds_longest; /* of it, the longest item of each stage */
 } snow_stats;
 SNOW_RECORD(snow_stats);

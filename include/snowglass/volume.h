@@ -50,7 +50,7 @@ SNOW_API double snow_unit_length(const char *unit, char name[16]);
 
 /* What a file says of one of several values of a voxel. */
 typedef struct snow_channel {
-    double color[3]; /* red, green, blue, 0 to 1; below 0: not said */
+    double color[3];  /* red, green, blue, 0 to 1; below 0: not said */
     double window[2]; /* data values to show; zeros: not said */
     char name[40];
     bool shown; /* the file shows it */
@@ -69,18 +69,18 @@ typedef struct snow_volume_info {
     bool medical;       /* the world is a patient's right, anterior, superior */
     char unit[16];      /* of spacing and matrix: "mm", "um", ... or "" */
     const char *format; /* constant: "raw", "nrrd", ..., "phantom", "memory" */
-    int64_t times;       /* steps in the file */
-    int64_t time;        /* the step that was read, from 0 */
-    char storage[160];   /* for people: level, axes, chunks, packing */
-    char modality[17];   /* of DICOM: "CT", "MR", "PT", ... */
+    int64_t times;      /* steps in the file */
+    int64_t time;       /* the step that was read, from 0 */
+    char storage[160];  /* for people: level, axes, chunks, packing */
+    char modality[17];  /* of DICOM: "CT", "MR", "PT", ... */
     char description[65]; /* of the DICOM series; a long name */
-    double window[2];   /* data values that the file would show; 0s: none */
-    int64_t components; /* of a vector in the file; else 0 or 1 */
-    bool hounsfield;    /* data values are Hounsfield units */
-    bool magnitude;     /* data values are lengths of vectors */
-    bool eight_bits;    /* values were bytes before a mask made them floats */
-    double time_value;  /* of the step, in time_unit; NaN: unknown */
-    char time_unit[64], calendar[24]; /* of time_value, by CF conventions */
+    double window[2];     /* data values that the file would show; 0s: none */
+    int64_t components;   /* of a vector in the file; else 0 or 1 */
+    bool hounsfield;      /* data values are Hounsfield units */
+    bool magnitude;       /* data values are lengths of vectors */
+    bool eight_bits;      /* values were bytes before a mask made them floats */
+    double time_value;    /* of the step, in time_unit; NaN: unknown */
+    char time_unit[64], calendar[24];  /* of time_value, by CF conventions */
     char quantity[64], value_unit[32]; /* what is measured, and its unit */
     bool whole;       /* values were whole numbers before they were masked */
     int64_t channels; /* of voxels with several values; else 0 or 1 */

@@ -228,9 +228,8 @@ json_t *measures_json(const measures *m) {
     json_t *list = json_array();
     for (int n = 0; m && n < m->count; n++) {
         const snow_measure *one = &m->each[n];
-        json_t *tree =
-            json_pack("{s:s, s:o}", "kind", kinds[one->kind], "points",
-                      points_json(one));
+        json_t *tree = json_pack("{s:s, s:o}", "kind", kinds[one->kind],
+                                 "points", points_json(one));
         if (one->kind == SNOW_MEASURE_LINE)
             json_object_set_new(tree, "length", json_number(one->result));
         else if (one->kind == SNOW_MEASURE_ANGLE)
@@ -255,8 +254,8 @@ static void report_ellipse(const measures *m, int n) {
     say("measure %d: ellipse on slice %lld across %c: %s%lld voxels, area "
         "%.6g%s%s%s",
         n + 1, (long long)one->index, "xyz"[one->axis], values,
-        (long long)one->count, one->result, *one->unit ? " " : "", one->unit,
-        *one->unit ? "2" : "");
+        (long long)one -> count, one -> result, *one -> unit ? " " : "",
+        one->unit, *one->unit ? "2" : "");
 }
 
 void measures_report(const measures *m) {

@@ -24,8 +24,8 @@ enum {
     CONVERT = VERB_CONVERT,
     TF = VERB_TF,
     SLICE = VERB_SLICE,
-    FILED = WRITTEN | SLICE,      /* all verbs whose pictures are files */
-    OVERLAID = FILED | SERVE,     /* all verbs that draw overlays */
+    FILED = WRITTEN | SLICE,  /* all verbs whose pictures are files */
+    OVERLAID = FILED | SERVE, /* all verbs that draw overlays */
     MEASURED = WRITTEN | SLICE | SERVE | EXPORT,
     PICTURE = RENDER | SLICE,     /* all verbs that make pictures */
     LOOKED = PICTURE | VERB_INFO, /* all verbs that use a look */

@@ -166,7 +166,7 @@ typedef struct options {
     annotate_value annotate;
     const char *box;     /* "outline", "axes"; NULL: none */
     const char *measure; /* NULL: nothing */
-    int verbosity;   /* -1 quiet, 0, 1 verbose; the last one counts */
+    int verbosity;       /* -1 quiet, 0, 1 verbose; the last one counts */
 
     bool version, help;
     const char *help_word;            /* the requested name, or NULL */

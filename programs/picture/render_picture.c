@@ -221,11 +221,10 @@ int render_state_draw(render_state *s, double azimuth, snow_image **image) {
 int render_state_measure(render_state *s, bool everywhere) {
     options step = render_state_step(s, s->whole.time);
     const snow_volume *here = process_ranks() == 1 ? s->volume : NULL;
-    return process_agree(process_talks()
-                             ? measures_find(&step, s->context, s->path,
-                                             &s->whole, here, everywhere,
-                                             &s->measures)
-                             : CONTINUE);
+    return process_agree(
+        process_talks() ? measures_find(&step, s->context, s->path, &s->whole,
+                                        here, everywhere, &s->measures)
+                        : CONTINUE);
 }
 
 /* --- reports -------------------------------------------------------------- */

@@ -106,7 +106,7 @@ void render_state_leave_strip(render_state *s) {
                                {0, 0},
                                &s->channels,
                                layers_legend(&s->layers, s->each_time),
-.measures = NULL});
+                               .measures = NULL});
     s->view.strip = s->strip;
 }
 

@@ -191,11 +191,11 @@ static json_t *technical_object(const json_t *from) {
         json_t *value = json_object_iter_value(at);
         char hidden[64];
         if (is_technical(key, strlen(key))) {
-            json_object_set_new(
-                made, key,
-                json_is_number(value) && !has_technical_number(key, strlen(key))
-                    ? json_string("(number)")
-                    : technical_json(value));
+            json_object_set_new(made, key,
+                                json_is_number(value) &&
+                                        !has_technical_number(key, strlen(key))
+                                    ? json_string("(number)")
+                                    : technical_json(value));
             continue;
         }
         snprintf(hidden, sizeof hidden, "(name %zu of %zu bytes)", n++,

@@ -33,8 +33,8 @@ typedef struct slice_work {
     int64_t count;
     slab slabs[3]; /* across each axis of the grid */
     int64_t first; /* of SLICE_ONE: the slice that its volume begins with */
-    int size[2];          /* of the picture, or of a frame */
-    double strip;         /* of it, that is left to a legend */
+    int size[2];   /* of the picture, or of a frame */
+    double strip;  /* of it, that is left to a legend */
     snow_volume *volume;  /* the slice, or all of them */
     bool in_file;         /* that has no room in memory: each is read alone */
     char *cut;            /* its voxels, if all came through a pipe */

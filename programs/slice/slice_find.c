@@ -423,7 +423,7 @@ int slice_leave_strip(slice_work *w) {
                                {0, 0},
                                &w->channels,
                                layers_legend(&w->layers, false),
-.measures = NULL});
+                               .measures = NULL});
     if (!(w->strip > 0))
         return CONTINUE;
     if (w->kind == SLICE_GRID || w->kind == SLICE_ORTHO)

@@ -35,7 +35,7 @@ static int make_shots(const slice_work *w, shot_list *out) {
         out->shots[n] = (movie_shot){.path = w->path,
                                      .time = w->opts.time,
                                      .slice = w->places[n].index,
-.axis = w->places[n].axis,
+                                     .axis = w->places[n].axis,
                                      .place = n,
                                      .step = -1};
     return out->shots ? CONTINUE

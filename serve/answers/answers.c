@@ -160,8 +160,8 @@ static bool read_slice(const json_t *tree, slice_asked *out) {
 }
 
 /* {"what": "slice", "axis": "axial", "index": 57, "range": [0, 80], "pane": 1,
- * "n": 8, "exact": true, "slab": "10mm:max"}: {"t": "slice", "pane": 1} where there is none, as the
- * page waits for it. */
+ * "n": 8, "exact": true, "slab": "10mm:max"}: {"t": "slice", "pane": 1} where
+ * there is none, as the page waits for it. */
 static int answer_slice(drawing *d, outbox *box, uint64_t client,
                         const json_t *tree) {
     slice_asked asked;

@@ -67,8 +67,8 @@ void answer_recipe_text(outbox *box, uint64_t client, const json_t *tree,
 int answer_question(drawing *d, viewer_state *s, outbox *box,
                     const viewer_question *question);
 
-/* The command of a movie that a page orders of the newest state, to be freed, and
- * the name of its file; NULL: the page has heard why not. */
+/* The command of a movie that a page orders of the newest state, to be freed,
+ * and the name of its file; NULL: the page has heard why not. */
 char *answer_movie(drawing *d, viewer_state *s, outbox *box,
                    const viewer_question *question, movie_order *order,
                    char name[100]);

@@ -4,9 +4,9 @@
 
 #include <stdbool.h>
 
-/* A draft that takes longer, to be drawn and packed, gets half the side; one that
- * takes less gets it back.  With a quarter of the pixels it takes at least a quarter of the time,
- * so the two do not alternate. */
+/* A draft that takes longer, to be drawn and packed, gets half the side; one
+ * that takes less gets it back.  With a quarter of the pixels it takes at least
+ * a quarter of the time, so the two do not alternate. */
 #define DRAFT_SECONDS_MOST 0.040
 #define DRAFT_SECONDS_LEAST 0.009
 #define DRAFT_SHRINK_MOST 3

@@ -34,8 +34,8 @@ typedef struct kept_counts {
 } kept_counts;
 
 typedef struct kept_values {
-    bool measured;  /* the ends are known */
-    double ends[2]; /* of all of them */
+    bool measured;                      /* the ends are known */
+    double ends[2];                     /* of all of them */
     kept_counts kept[1 + VALUES_PARTS]; /* all values; parts of the range */
     uint64_t uses;
 } kept_values;
@@ -71,7 +71,7 @@ struct drawing {
     bool volume_is_new, look_is_new; /* since the caller last looked */
     bool waits; /* nothing is open yet: a page chooses a volume of a folder */
     int opened; /* how many were chosen so */
-    bool live; /* a simulation draws it: nothing but grid and look is known */
+    bool live;  /* a simulation draws it: nothing but grid and look is known */
     snow_transfer *slice_look;            /* of the last slice (slices.h) */
     channel_set slice_channels;           /* and of its channels */
     char *slice_key;                      /* what they were made of */
@@ -84,8 +84,8 @@ struct drawing {
     char *measure_key;  /* what the measures are of */
     json_t *times;      /* texts of the file's steps (movies/times.h) */
     bool times_are_known;
-    json_t *offer; /* the movies that pages can order; NULL: none */
-    char *share_key;    /* what the share is of (share.h) */
+    json_t *offer;   /* the movies that pages can order; NULL: none */
+    char *share_key; /* what the share is of (share.h) */
     double share;
     draw_fn *draw;          /* instead of render_state_draw; or NULL */
     double earlier_seconds; /* that pieces of the last picture took before */
@@ -96,9 +96,9 @@ struct drawing {
 int drawing_open(const options *first, json_t *recipe, drawing *out);
 void drawing_close(drawing *d);
 
-/* Not for many ranks.  A drawing of nothing yet; then of a volume in the place of
- * what was open, which drawing_empty has freed.  Options, and what they name,
- * stay the caller's while it is drawn. */
+/* Not for many ranks.  A drawing of nothing yet; then of a volume in the place
+ * of what was open, which drawing_empty has freed.  Options, and what they
+ * name, stay the caller's while it is drawn. */
 int drawing_wait(const options *first, drawing *out);
 int drawing_switch(drawing *d, const options *first, const json_t *recipe);
 

@@ -5,7 +5,8 @@
 
 #define IDENTITY_BYTES 64
 
-/* "1048576.1764489600.000000000" of a file or a folder; "" if there is no such file. */
+/* "1048576.1764489600.000000000" of a file or a folder; "" if there is no such
+ * file. */
 void identity_of(const char *path, char out[IDENTITY_BYTES]);
 
 /* The instruction set whose bits pictures have, for commands; NULL: that of the

@@ -42,16 +42,17 @@ static void take_projection(const drawing *d, snow_look *look) {
     look->range = pet ? SNOW_RANGE_SIGNAL : SNOW_RANGE_ROBUST;
 }
 
-int small_thumbnail(drawing *d, thumbnail *of, int side,
-                    snow_stop_fn *stop, void *user, snow_image **image) {
+int small_thumbnail(drawing *d, thumbnail *of, int side, snow_stop_fn *stop,
+                    void *user, snow_image **image) {
     render_state *s = &d->state;
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
     snow_look look = {.size = sizeof look,
                       .preset = *of->preset ? of->preset : NULL,
                       .colormap = of->colormap};
-    ranks_tell(d, RANKS_THUMBNAIL,
-               json_pack("[s,s?,b,i]", of->preset, of->colormap, of->mip, side));
+    ranks_tell(
+        d, RANKS_THUMBNAIL,
+        json_pack("[s,s?,b,i]", of->preset, of->colormap, of->mip, side));
     if (of->mip)
         take_projection(d, &look);
     else if (!*of->preset && d->first.loaded) /* what no preset means then */

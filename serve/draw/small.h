@@ -21,7 +21,7 @@ typedef struct thumbnail {
 } thumbnail;
 
 /* A picture, unless `stop` says so: EXIT_INTERRUPTED. */
-int small_thumbnail(drawing *d, thumbnail *of, int side,
-                    snow_stop_fn *stop, void *user, snow_image **image);
+int small_thumbnail(drawing *d, thumbnail *of, int side, snow_stop_fn *stop,
+                    void *user, snow_image **image);
 
 #endif

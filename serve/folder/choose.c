@@ -1,10 +1,10 @@
 /* choose.c - from an entry of the list to what is opened, and whether a folder
  * has to have a list at all; see folder.h. */
-#include "folder/inside.h"
-#include "folder/own.h"
 #include "commands/commands.h"
 #include "commands/first.h"
 #include "commands/info_list.h"
+#include "folder/inside.h"
+#include "folder/own.h"
 #include "movie/series.h"
 #include "options/config.h"
 #include "recipe_file.h"
@@ -124,13 +124,13 @@ static int take_recipe(const folder *f, const char *path, const char *name,
                        opened *o) {
     static const char *const files[] = {"input", "tf", "mask", "label-table",
                                         "overlay"};
-    static const char *const unwanted[] = {"output", "depth", "size",
-                                           "verb",   "quality"};
+    static const char *const unwanted[] = {"output", "depth", "size", "verb",
+                                           "quality"};
     json_t *tree = describe_recipe_tree(path);
     const char *input = json_string_value(json_object_get(tree, "input"));
-    int done = input ? CONTINUE
-                     : fail_usage("%s: is no recipe any more; choose another",
-                                  name);
+    int done =
+        input ? CONTINUE
+              : fail_usage("%s: is no recipe any more; choose another", name);
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         const char *file = json_string_value(json_object_get(tree, files[i]));
         if (file && done == CONTINUE)
@@ -159,8 +159,8 @@ static bool is_same(const snow_volume_info *a, const snow_volume_info *b) {
            strcmp(a->description, b->description) == 0;
 }
 
-/* The series that was listed, whatever the folder has got since; other files may
- * be another one under the same name. */
+/* The series that was listed, whatever the folder has got since; other files
+ * may be another one under the same name. */
 static int check_series(const folder_entry *e, const opened *o) {
     snow_context *context = NULL;
     const snow_volume_options data = data_options(&o->opts);

@@ -3,10 +3,10 @@
  *
  * They are made when pages ask for them, one after another, and the newest are
  * kept. */
-#include "folder/inside.h"
-#include "folder/own.h"
 #include "answers/answers.h"
 #include "commands/commands.h"
+#include "folder/inside.h"
+#include "folder/own.h"
 #include "message.h"
 #include "pack.h"
 #include "run/log.h"
@@ -81,7 +81,8 @@ static snow_status draw(folder *f, const options *opts, const char *path,
     if (status == SNOW_STATUS_OK)
         status = snow_transfer_new_for_volume(volume, &look, &transfer);
     if (status == SNOW_STATUS_OK)
-        status = snow_slice_render(volume, 0, transfer, &view, &settings, image);
+        status =
+            snow_slice_render(volume, 0, transfer, &view, &settings, image);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
     return status;
@@ -169,8 +170,8 @@ static bool take(folder *f, cover_question *q, char path[PATH_MAX],
         f->first = (f->first + 1) % COVERS_ASKED;
         f->waiting--;
         const folder_entry *e = &f->entries[q->entry];
-        makes = e->kind == ENTRY_VOLUME && !e->cover &&
-                list_path(f, e->name, path);
+        makes =
+            e->kind == ENTRY_VOLUME && !e->cover && list_path(f, e->name, path);
         memcpy(series, e->series, 65);
         if (!makes)
             answer(f, q, e->cover);

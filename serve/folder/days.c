@@ -20,10 +20,11 @@
 /* More series than a folder has. */
 #define SERIES_MOST 1024
 
-/* The value of an element with a VR, or without; false where it is not found. */
+/* The value of an element with a VR, or without; false where it is not found.
+ */
 static bool find_value(const unsigned char *head, size_t size,
-                       const unsigned char tag[4], const char *vr,
-                       char *out, size_t capacity) {
+                       const unsigned char tag[4], const char *vr, char *out,
+                       size_t capacity) {
     for (size_t at = 0; at + 8 <= size; at++) {
         if (memcmp(head + at, tag, 4) != 0)
             continue;
@@ -35,7 +36,8 @@ static bool find_value(const unsigned char *head, size_t size,
             continue;
         memcpy(out, head + at + 8, length);
         out[length] = 0;
-        for (size_t n = length; n > 0 && (out[n - 1] == ' ' || !out[n - 1]); n--)
+        for (size_t n = length; n > 0 && (out[n - 1] == ' ' || !out[n - 1]);
+             n--)
             out[n - 1] = 0;
         return true;
     }
@@ -93,10 +95,12 @@ void days_read(folder *f, const char *name, days_of_folder *out) {
     const struct dirent *entry;
     day_of_series one;
     *out = (days_of_folder){.series = calloc(SERIES_MOST, sizeof one)};
-    DIR *stream = out->series && list_path(f, name, path) ? opendir(path) : NULL;
+    DIR *stream =
+        out->series && list_path(f, name, path) ? opendir(path) : NULL;
     while (stream && cover_serve(f) && (entry = readdir(stream)))
         if (entry->d_name[0] != '.' &&
-            snprintf(own, sizeof own, "%s/%s", path, entry->d_name) < PATH_MAX &&
+            snprintf(own, sizeof own, "%s/%s", path, entry->d_name) <
+                PATH_MAX &&
             is_file(own) && read_head(own, &one))
             note(out, &one);
     if (stream)

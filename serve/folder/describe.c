@@ -48,8 +48,8 @@ void describe_add(folder *f, const char *name, const char *series,
     list_add(f, &made);
 }
 
-/* Whether a file is none of a volume, by what is said of it: there are notes and
- * tables beside volumes, and data whose header is another file. */
+/* Whether a file is none of a volume, by what is said of it: there are notes
+ * and tables beside volumes, and data whose header is another file. */
 static bool is_other(const char *why) {
     static const char *const words[] = {"unknown format", ": is raw data",
                                         "not a volume", "is empty"};

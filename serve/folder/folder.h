@@ -26,8 +26,8 @@ bool folder_is_meant(const options *opts);
 /* Refuses options that mean one volume.  Returns CONTINUE or an exit code. */
 int folder_check(const options *opts);
 
-/* The list of a folder, empty at first.  `opts` stay the caller's, and are those
- * of each volume.  NULL: no memory. */
+/* The list of a folder, empty at first.  `opts` stay the caller's, and are
+ * those of each volume.  NULL: no memory. */
 folder *folder_new(const options *opts, outbox *box);
 void folder_free(folder *f);
 

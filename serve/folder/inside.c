@@ -56,11 +56,12 @@ static bool check(const char *root, const char *path, int levels,
     bool good = lstat(path, &itself) == 0 && stat(path, &what) == 0;
     const bool link = good && S_ISLNK(itself.st_mode);
     if (good && (link || !levels))
-        good = is_below(root, path) && !(link && levels && S_ISDIR(what.st_mode));
+        good =
+            is_below(root, path) && !(link && levels && S_ISDIR(what.st_mode));
     if (!good)
         note(path, where);
-    return good && (!S_ISDIR(what.st_mode) ||
-                    check_each(root, path, levels, where));
+    return good &&
+           (!S_ISDIR(what.st_mode) || check_each(root, path, levels, where));
 }
 
 bool inside_root(const char *root, const char *path, char where[NAME_MAX + 1]) {

@@ -1,12 +1,12 @@
-/* list.c - implements the list of folder.h: pages hear how long it is, and fetch
- * what they have not.
+/* list.c - implements the list of folder.h: pages hear how long it is, and
+ * fetch what they have not.
  *
  *   {"t": "folder", "name": "study", "count": 3, "done": true, "open": 1, ...}
  *   {"t": "ask", "what": "folder", "from": 2}
  *   {"t": "entries", "from": 2, "entries": [{"name": "a/head.nii", ...}]} */
 #define _XOPEN_SOURCE 700
-#include "folder/own.h"
 #include "answers/answers.h"
+#include "folder/own.h"
 #include "run/log.h"
 #include "run/paths.h"
 
@@ -23,8 +23,9 @@
 /* --- what is added -------------------------------------------------------- */
 
 bool list_path(const folder *f, const char *name, char out[PATH_MAX]) {
-    return snprintf(out, PATH_MAX, "%s%s%s", strcmp(f->path, "/") ? f->path : "",
-                    *name ? "/" : "", name) < PATH_MAX;
+    return snprintf(out, PATH_MAX, "%s%s%s",
+                    strcmp(f->path, "/") ? f->path : "", *name ? "/" : "",
+                    name) < PATH_MAX;
 }
 
 static void forget(folder_entry *e) {
@@ -40,7 +41,8 @@ void list_forget(folder *f) {
     free(f->entries);
 }
 
-/* Under the lock.  Where there is no memory the entry counts as one too many. */
+/* Under the lock.  Where there is no memory the entry counts as one too many.
+ */
 static bool make_space(folder *f) {
     if (f->count >= ENTRIES_MOST)
         return false;
@@ -70,8 +72,8 @@ void list_add(folder *f, const folder_entry *entry) {
     list_tell(f, false);
 }
 
-/* Without the path of the folder, which is nobody's business, and the name, which
- * stands beside it. */
+/* Without the path of the folder, which is nobody's business, and the name,
+ * which stands beside it. */
 static char *shorten(const folder *f, const char *name, const char *why) {
     char *text = strdup(why), prefix[PATH_MAX + 1];
     snprintf(prefix, sizeof prefix, "%s/", f->path);
@@ -79,7 +81,8 @@ static char *shorten(const folder *f, const char *name, const char *why) {
     for (char *at = text; at && (at = strstr(at, prefix));)
         memmove(at, at + length, strlen(at + length) + 1);
     const size_t own = strlen(name);
-    if (text && strncmp(text, name, own) == 0 && strncmp(text + own, ": ", 2) == 0)
+    if (text && strncmp(text, name, own) == 0 &&
+        strncmp(text + own, ": ", 2) == 0)
         memmove(text, text + own + 2, strlen(text + own + 2) + 1);
     return text;
 }
@@ -125,13 +128,12 @@ void list_tell(folder *f, bool now) {
     json_t *tree = NULL;
     if (due) {
         f->told = time;
-        tree = json_pack("{s:s, s:o, s:I, s:I, s:I, s:I, s:b, s:o}", "t",
-                         "folder", "name", list_text(base_of(f->real)), "count",
-                         (json_int_t)f->count, "others",
-                         (json_int_t)f->left_out, "beyond",
-                         (json_int_t)f->beyond, "faults", (json_int_t)f->faults,
-                         "done", (int)f->done, "open",
-                         f->open < 0 ? json_null() : json_integer(f->open));
+        tree = json_pack(
+            "{s:s, s:o, s:I, s:I, s:I, s:I, s:b, s:o}", "t", "folder", "name",
+            list_text(base_of(f->real)), "count", (json_int_t)f->count,
+            "others", (json_int_t)f->left_out, "beyond", (json_int_t)f->beyond,
+            "faults", (json_int_t)f->faults, "done", (int)f->done, "open",
+            f->open < 0 ? json_null() : json_integer(f->open));
     }
     pthread_mutex_unlock(&f->lock);
     if (tree)
@@ -151,11 +153,10 @@ static json_t *entry_tree(const folder_entry *e) {
     static const char *const kinds[] = {[ENTRY_VOLUME] = "volume",
                                         [ENTRY_RECIPE] = "recipe",
                                         [ENTRY_FAULT] = "fault"};
-    json_t *tree = json_pack("{s:s, s:o, s:o, s:s, s:I, s:I}", "kind",
-                             kinds[e->kind], "name", list_text(e->name),
-                             "series", list_text(e->series), "day", e->day,
-                             "bytes", (json_int_t)e->bytes, "changed",
-                             (json_int_t)e->changed);
+    json_t *tree = json_pack(
+        "{s:s, s:o, s:o, s:s, s:I, s:I}", "kind", kinds[e->kind], "name",
+        list_text(e->name), "series", list_text(e->series), "day", e->day,
+        "bytes", (json_int_t)e->bytes, "changed", (json_int_t)e->changed);
     if (e->info)
         set_info(tree, e->info);
     if (e->text)

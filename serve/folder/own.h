@@ -20,7 +20,7 @@ typedef struct folder_entry {
     char *name;      /* below the folder; of a recipe its file's */
     char *text;      /* of a recipe the volume's name; or NULL */
     char series[65]; /* DICOM, one of several: a UID or a number; or "" */
-    char day[11];           /* of a DICOM study, "2026-11-30"; or "" */
+    char day[11];    /* of a DICOM study, "2026-11-30"; or "" */
     snow_volume_info *info; /* of a volume */
     uint64_t bytes;
     int64_t changed; /* seconds since 1970 */
@@ -65,9 +65,10 @@ struct folder {
     pthread_cond_t changed;
     folder_entry *entries;
     size_t count, capacity;
-    size_t left_out, faults, beyond; /* no volumes; not to be opened; too many */
+    size_t left_out, faults,
+        beyond; /* no volumes; not to be opened; too many */
     bool done;
-    double told; /* when pages last heard of it */
+    double told;                        /* when pages last heard of it */
     cover_question asked[COVERS_ASKED]; /* a ring */
     int first, waiting;
     size_t kept[COVERS_KEPT]; /* entries that have covers: a ring */
@@ -100,7 +101,8 @@ void walk_all(folder *f);
 
 /* --- describe.c ---
  *
- * By the header.  Errors as snow_volume_inspect; the message is the context's. */
+ * By the header.  Errors as snow_volume_inspect; the message is the context's.
+ */
 snow_status describe(folder *f, const char *path, const char *series,
                      snow_volume_info *info);
 

@@ -57,15 +57,15 @@ static bool has_mark(const char *path) {
 
 static found kind_of_file(const char *path, const char *name) {
     static const char *const dicom[] = {".dcm", ".dicom", ".ima", NULL};
-    static const char *const pictures[] = {".png",  ".jpg",  ".jpeg",
+    static const char *const pictures[] = {".png", ".jpg",  ".jpeg",
                                            ".tif", ".tiff", NULL};
     static const char *const recipes[] = {".json", NULL};
     if (strcasecmp(name, "DICOMDIR") == 0)
         return FOUND_NOTHING; /* an index of others */
-    return ends_as(name, recipes)                    ? FOUND_RECIPE
-           : ends_as(name, pictures)                 ? FOUND_PICTURE
+    return ends_as(name, recipes)                   ? FOUND_RECIPE
+           : ends_as(name, pictures)                ? FOUND_PICTURE
            : ends_as(name, dicom) || has_mark(path) ? FOUND_DICOM
-                                                     : FOUND_PLAIN;
+                                                    : FOUND_PLAIN;
 }
 
 /* Links to folders are not followed, as what is in the folder is found where it
@@ -201,8 +201,8 @@ static void walk(folder *f, const char *within, int levels) {
     const bool array = c.array && add_folder(f, within, true);
     if (!array && c.dicom)
         describe_series(f, within);
-    const bool stacked = !array && !c.dicom && c.pictures &&
-                         add_folder(f, within, false);
+    const bool stacked =
+        !array && !c.dicom && c.pictures && add_folder(f, within, false);
     if (!array)
         add_files(f, within, &c, stacked);
     for (int n = 0; n < c.count && !array && levels < LEVELS_MOST; n++)

@@ -11,8 +11,8 @@
 #define CHILD_LINE_BYTES 512
 
 typedef struct child {
-    pid_t process; /* 0: none; and of its group */
-    int messages;  /* the end of a pipe; -1: none */
+    pid_t process;               /* 0: none; and of its group */
+    int messages;                /* the end of a pipe; -1: none */
     char text[CHILD_LINE_BYTES]; /* a line that is not whole yet */
     size_t used;
 } child;

@@ -23,8 +23,7 @@ char *movie_command(const drawing *d, const movie_order *order,
         opts.time_end = order->last + 1;
         opts.time_range = true;
     }
-    const bool good =
-        order->fps <= 0 ||
-        options_take(&opts, verb_of(verb), "fps", rate) == CONTINUE;
+    const bool good = order->fps <= 0 || options_take(&opts, verb_of(verb),
+                                                      "fps", rate) == CONTINUE;
     return good ? drawing_command_of(&opts, verb) : NULL;
 }

@@ -38,7 +38,8 @@ static void remove_all(const char *path) {
 }
 
 static int lock_folder(const char *path) {
-    const int lock = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    const int lock =
+        open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0)
         return lock;
     if (lock >= 0)
@@ -77,8 +78,8 @@ static void sweep_all(void) {
 
 int folder_make(private_folder *out) {
     sweep_all();
-    const int length = snprintf(out->path, sizeof out->path, "%s/" NAME "XXXXXX",
-                                folder_parent());
+    const int length = snprintf(out->path, sizeof out->path,
+                                "%s/" NAME "XXXXXX", folder_parent());
     if (length < 0 || (size_t)length >= sizeof out->path)
         errno = ENAMETOOLONG;
     else if (mkdtemp(out->path)) { /* of mode 0700 */

@@ -1,9 +1,9 @@
 /* job.c - implements job.h.  A thread of its own waits for orders and for the
  * tool: no page and no picture waits for either. */
 #include "movies/job.h"
+#include "movie/movie_encoder.h"
 #include "movies/child.h"
 #include "movies/folder.h"
-#include "movie/movie_encoder.h"
 #include "options/options.h"
 #include "run/log.h"
 
@@ -35,7 +35,8 @@ struct movie_job {
     movie_order order;
     char name[100];
     char text[CHILD_LINE_BYTES]; /* the stage, or why it failed */
-    char last[CHILD_LINE_BYTES]; /* what the tool said last, but for its frames */
+    char last[CHILD_LINE_BYTES]; /* what the tool said last, but for its frames
+                                  */
     int64_t frame, bytes;
     int pages;
     double alone_since;
@@ -67,11 +68,11 @@ json_t *job_offer(void) {
 static void tell(movie_job *j) {
     static const char *const names[] = {"none", "writing", "done", "failed",
                                         "cancelled"};
-    json_t *tree = json_pack(
-        "{s:s, s:s, s:s, s:s, s:I, s:I, s:I, s:s}", "t", "movie", "state",
-        names[j->state], "name", j->name, "tag", j->order.tag, "frame",
-        (json_int_t)j->frame, "frames", (json_int_t)j->order.frames, "bytes",
-        (json_int_t)j->bytes, "text", j->text);
+    json_t *tree = json_pack("{s:s, s:s, s:s, s:s, s:I, s:I, s:I, s:s}", "t",
+                             "movie", "state", names[j->state], "name", j->name,
+                             "tag", j->order.tag, "frame", (json_int_t)j->frame,
+                             "frames", (json_int_t)j->order.frames, "bytes",
+                             (json_int_t)j->bytes, "text", j->text);
     char *text = json_dumps(tree, JSON_COMPACT);
     outbox_put_text(j->box, 0, MESSAGE_MOVIE, text);
     free(text);
@@ -80,7 +81,8 @@ static void tell(movie_job *j) {
 
 /* What the tool says, without the folder, which is nobody's business, and what
  * no page can do. */
-static void clean_line(const movie_job *j, const char *line, char out[CHILD_LINE_BYTES]) {
+static void clean_line(const movie_job *j, const char *line,
+                       char out[CHILD_LINE_BYTES]) {
     static const char mark[] = "snowglass: ";
     const size_t length = strlen(j->folder.path);
     size_t used = 0;
@@ -133,8 +135,8 @@ static bool is_to_stop(movie_job *j) {
     return stops;
 }
 
-/* Until it has ended; its exit code.  Where nobody waits any more it is asked to
- * end, and after some time made to. */
+/* Until it has ended; its exit code.  Where nobody waits any more it is asked
+ * to end, and after some time made to. */
 static int follow(movie_job *j, child *c) {
     const struct timespec pause = {.tv_nsec = (long)(1e9 * POLL_SECONDS)};
     char line[CHILD_LINE_BYTES];

@@ -22,9 +22,9 @@ refuse(movie_order *out, const char *format, ...) {
 }
 
 static bool is_key(const char *key) {
-    static const char *const all[] = {"t",     "what", "kind",   "frames",
-                                       "first", "last", "fps",    "size",
-                                       "tag",   "format"};
+    static const char *const all[] = {"t",     "what",  "kind", "frames",
+                                      "first", "last",  "fps",  "size",
+                                      "tag",   "format"};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (strcmp(all[i], key) == 0)
             return true;
@@ -77,7 +77,8 @@ static bool read_steps(const json_t *tree, int64_t times, movie_order *out) {
     out->last = last;
     out->frames = last - out->first + 1;
     return out->frames <= ORDER_FRAMES_MOST ||
-           refuse(out, "movie: %" PRId64 " steps are more than %d; choose fewer",
+           refuse(out,
+                  "movie: %" PRId64 " steps are more than %d; choose fewer",
                   out->frames, ORDER_FRAMES_MOST);
 }
 

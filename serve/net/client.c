@@ -225,7 +225,8 @@ static bool send_piece(client *c) {
     if (first && is_picture(p))
         frame_head_set_n(scratch + LWS_PRE, set_log_n(&c->sets, p->revision));
     if (first && p->topic == MESSAGE_STATE)
-        state_text_set_step(scratch + LWS_PRE, set_log_n(&c->sets, p->revision));
+        state_text_set_step(scratch + LWS_PRE,
+                            set_log_n(&c->sets, p->revision));
     int how = !first       ? LWS_WRITE_CONTINUATION
               : p->is_text ? LWS_WRITE_TEXT
                            : LWS_WRITE_BINARY;

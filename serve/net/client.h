@@ -18,8 +18,9 @@
 /* Bytes of a piece: what a socket takes at once. */
 #define CLIENT_PIECE_BYTES 65536
 
-/* On a thin link the picture at rest goes in messages of so many bytes, of which
- * few are under way: what has not gone can be dropped when another follows. */
+/* On a thin link the picture at rest goes in messages of so many bytes, of
+ * which few are under way: what has not gone can be dropped when another
+ * follows. */
 #define CLIENT_PART_BYTES 16384
 #define CLIENT_PARTS_MOST 3
 

@@ -49,13 +49,15 @@ int download_answer(struct lws *wsi, const guard *g, movie_job *job,
     if (lws_http_get_uri_and_method(wsi, &uri, &length) != LWSHUMETH_GET)
         return pages_refuse(wsi, 405, "Only GET is understood.\n");
     if (!has_secret(wsi, g))
-        return pages_refuse(wsi, 403, "The secret of the printed URL is "
-                                      "needed.\n");
+        return pages_refuse(wsi, 403,
+                            "The secret of the printed URL is "
+                            "needed.\n");
     download_close(d); /* of an earlier request */
     d->file = job ? job_open(job, name) : -1;
     if (d->file < 0)
-        return pages_refuse(wsi, 404, "There is no movie: it was taken away, or "
-                                      "is not written yet.\n");
+        return pages_refuse(wsi, 404,
+                            "There is no movie: it was taken away, or "
+                            "is not written yet.\n");
     d->open = true;
     if (fstat(d->file, &what) != 0 || what.st_size < 1)
         return -1;

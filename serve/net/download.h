@@ -1,5 +1,5 @@
-/* download.h - sends the movie that is done, to who has the secret: in a header,
- * as addresses stand in histories and logs. */
+/* download.h - sends the movie that is done, to who has the secret: in a
+ * header, as addresses stand in histories and logs. */
 #ifndef DOWNLOAD_H
 #define DOWNLOAD_H
 
@@ -21,8 +21,8 @@ typedef struct download {
 /* Whether a path is its address, before which a proxy may put others. */
 bool download_is_meant(const char *path);
 
-/* Answers a request.  Returns what a callback of lws does, as all here do: 0 where
- * it is sent. */
+/* Answers a request.  Returns what a callback of lws does, as all here do: 0
+ * where it is sent. */
 int download_answer(struct lws *wsi, const guard *g, movie_job *job,
                     download *d);
 

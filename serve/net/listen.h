@@ -28,8 +28,8 @@ void listener_free(listener *l);
 void listener_wake(void *listener);
 
 /* Serves until a signal comes, or no page was there for the idle time.
- * Questions go first to `hear`, if there is one, which says whether it has taken
- * them.  What a job writes is sent to pages; or NULL. */
+ * Questions go first to `hear`, if there is one, which says whether it has
+ * taken them.  What a job writes is sent to pages; or NULL. */
 typedef bool listener_hear(void *user, uint64_t client, const json_t *question);
 void listener_run(listener *l, viewer_state *state, outbox *box,
                   listener_hear *hear, void *hearer, movie_job *job);

@@ -160,6 +160,7 @@ int pages_answer(struct lws *wsi, const guard *g, const char *path) {
     const page_file *file = page_files;
     while (name && file->name && strcmp(file->name, name) != 0)
         file++;
-    return name && file->name ? send_file(wsi, file, method == LWSHUMETH_GET)
-                              : pages_refuse(wsi, 404, "There is no such page.\n");
+    return name && file->name
+               ? send_file(wsi, file, method == LWSHUMETH_GET)
+               : pages_refuse(wsi, 404, "There is no such page.\n");
 }

@@ -178,8 +178,8 @@ static void find_spots(const measure_view *m, const double box[4],
     spots[3] = (label_spot){x, box[1], 0, -1};
     for (int n = 0; n < 4; n++) {
         const double dx = n & 1 ? -1 : 1, dy = n & 2 ? -1 : 1;
-        spots[4 + n] = spot_of(dx > 0 ? box[2] : box[0],
-                               dy > 0 ? box[3] : box[1], dx, dy);
+        spots[4 + n] =
+            spot_of(dx > 0 ? box[2] : box[0], dy > 0 ? box[3] : box[1], dx, dy);
     }
     if (m->measure->kind == SNOW_MEASURE_ELLIPSE)
         return;
@@ -192,14 +192,14 @@ static void find_spots(const measure_view *m, const double box[4],
         const double sign = dy < 0 ? -1 : 1; /* first to the right */
         spots[0] = spot_of((p[0][0] + p[1][0]) / 2, (p[0][1] + p[1][1]) / 2,
                            sign * dy, -sign * dx);
-        spots[1] = (label_spot){spots[0].x, spots[0].y, -spots[0].dx,
-                                -spots[0].dy};
+        spots[1] =
+            (label_spot){spots[0].x, spots[0].y, -spots[0].dx, -spots[0].dy};
         return;
     }
     double dx = 0, dy = 0;
     for (int n = 0; n < 3; n += 2) {
-        const label_spot side = spot_of(0, 0, p[n][0] - p[1][0],
-                                        p[n][1] - p[1][1]);
+        const label_spot side =
+            spot_of(0, 0, p[n][0] - p[1][0], p[n][1] - p[1][1]);
         dx -= side.dx;
         dy -= side.dy;
     }
@@ -264,8 +264,8 @@ static snow_status draw_label(const measure_view *m, size_t shape) {
         top = spot->y + away * spot->dy - tall / 2;
         left = fmax(fmin(left, edge[2] - gap - wide), edge[0] + gap);
         top = fmax(fmin(top, edge[3] - gap - tall), edge[1] + gap);
-        const double taken[4] = {left - clear, top - clear,
-                                 left + wide + clear, top + tall + clear};
+        const double taken[4] = {left - clear, top - clear, left + wide + clear,
+                                 top + tall + clear};
         if (is_free(overlay, taken))
             break;
     }

@@ -100,8 +100,9 @@ float snow_half_to_float(uint16_t half);
  * first are red, green and blue, as in a photograph, the next opacity. */
 void snow_channels_begin(snow_volume_info *info, int64_t count, bool shown);
 
-/* All are of emitted light, if there are few, but those with a bit of `through`,
- * which are of light that passes through: these are shown only alone. */
+/* All are of emitted light, if there are few, but those with a bit of
+ * `through`, which are of light that passes through: these are shown only
+ * alone. */
 void snow_channels_are_light(snow_volume_info *info, uint64_t through);
 
 /* Copies as many whole letters of a name as fit; '?' for a byte that begins

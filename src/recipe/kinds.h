@@ -19,9 +19,10 @@ extern const recipe_kind recipe_reals, recipe_given_reals, recipe_point,
 extern const recipe_kind recipe_text, recipe_input, recipe_labels, recipe_known,
     recipe_name, recipe_given_name;
 
-extern const recipe_kind recipe_kernel, recipe_legend, recipe_annotate, recipe_measure,
-    recipe_unit, recipe_iso, recipe_range, recipe_points, recipe_color,
-    recipe_bits, recipe_light, recipe_material, recipe_channel, recipe_time;
+extern const recipe_kind recipe_kernel, recipe_legend, recipe_annotate,
+    recipe_measure, recipe_unit, recipe_iso, recipe_range, recipe_points,
+    recipe_color, recipe_bits, recipe_light, recipe_material, recipe_channel,
+    recipe_time;
 
 /* --- for other kinds ------------------------------------------------------ */
 

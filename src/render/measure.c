@@ -216,8 +216,8 @@ static snow_status read_points(const reading *r, snow_measure *m) {
     if (!(snow_length(ways[0]) > 0 && snow_length(ways[1]) > 0))
         return refuse(r, "two points of the angle are one");
     snow_cross(ways[0], ways[1], normal);
-    m->result = atan2(snow_length(normal), snow_dot(ways[0], ways[1])) * 180 /
-                acos(-1);
+    m->result =
+        atan2(snow_length(normal), snow_dot(ways[0], ways[1])) * 180 / acos(-1);
     return SNOW_STATUS_OK;
 }
 
@@ -332,8 +332,7 @@ static snow_status read_ellipse(const reading *r, snow_measure *m) {
     if (!info)
         return SNOW_STATUS_OK;
     snow_view_init(&view);
-    SNOW_TRY(
-        snow_slice_view(r->context, info, r->words[1], &view, &m->axis));
+    SNOW_TRY(snow_slice_view(r->context, info, r->words[1], &view, &m->axis));
     const int world = world_axis(&view);
     find_slice(info, world, position, m);
     const int count = read_numbers(r->words[3], 3, numbers);
@@ -342,8 +341,7 @@ static snow_status read_ellipse(const reading *r, snow_measure *m) {
     if (!is_within(info, m->points[0]))
         m->outside = 1;
     snow_cross(view.up, view.back, right);
-    const char *wrong =
-        read_end(r, world, r->words[4], right, m, m->points[1]);
+    const char *wrong = read_end(r, world, r->words[4], right, m, m->points[1]);
     if (!wrong)
         wrong = read_end(r, world, r->words[5], view.up, m, m->points[2]);
     if (wrong)
@@ -356,8 +354,7 @@ static snow_status read_ellipse(const reading *r, snow_measure *m) {
 }
 
 snow_status snow_measure_read(snow_context *context, const char *text, int n,
-                              const snow_volume_info *info,
-                              snow_measure *out) {
+                              const snow_volume_info *info, snow_measure *out) {
     reading r = {.context = context, .n = n + 1};
     snow_volume_info volume;
     snow_measure m;
@@ -379,8 +376,9 @@ snow_status snow_measure_read(snow_context *context, const char *text, int n,
         if (strcmp(r.words[0], kinds[kind]) == 0)
             m.kind = (snow_measure_kind)kind;
     if (m.kind == SNOW_MEASURE_NONE)
-        return refuse(&r, r.count < 0 ? "it is too long"
-                                      : "its kind must be line, angle or ellipse");
+        return refuse(&r, r.count < 0
+                              ? "it is too long"
+                              : "its kind must be line, angle or ellipse");
     SNOW_TRY(m.kind == SNOW_MEASURE_ELLIPSE ? read_ellipse(&r, &m)
                                             : read_points(&r, &m));
     return SNOW_RECORD_FILL(context, snow_measure, &m, out);
@@ -401,7 +399,8 @@ typedef struct ellipse_grid {
 /* Shares of the half-axes of a vector in their plane. */
 static void shares_of(double ways[2][3], const double vector[3],
                       double out[2]) {
-    const double aa = snow_dot(ways[0], ways[0]), ab = snow_dot(ways[0], ways[1]),
+    const double aa = snow_dot(ways[0], ways[0]),
+                 ab = snow_dot(ways[0], ways[1]),
                  bb = snow_dot(ways[1], ways[1]), whole = aa * bb - ab * ab;
     const double a = snow_dot(ways[0], vector), b = snow_dot(ways[1], vector);
     out[0] = (a * bb - b * ab) / whole;
@@ -413,9 +412,8 @@ static bool place_grid(const snow_volume *volume, const snow_measure *m,
     const snow_volume_info info = unscaled(&volume->info);
     const int64_t strides[3] = {1, info.dims[0], info.dims[0] * info.dims[1]};
     double ways[2][3], index[3], corner[3], from[3];
-    *out = (ellipse_grid){.volume = volume,
-                          .u = (m->axis + 1) % 3,
-                          .v = (m->axis + 2) % 3};
+    *out = (ellipse_grid){
+        .volume = volume, .u = (m->axis + 1) % 3, .v = (m->axis + 2) % 3};
     if (!(cross_length(m, ways) > 0) || !index_of(&info, m->points[0], index))
         return false;
     const double slice = rint(index[m->axis]);
@@ -488,8 +486,7 @@ snow_status snow_measure_values(const snow_volume *volume,
         if (m.count > 0)
             m.mean = sum / (double)m.count;
         if (m.count > 1)
-            m.deviation =
-                sqrt(sum_up(&grid, true, &m) / (double)(m.count - 1));
+            m.deviation = sqrt(sum_up(&grid, true, &m) / (double)(m.count - 1));
     }
     return SNOW_RECORD_FILL(context, snow_measure, &m, measure);
 }

@@ -210,9 +210,8 @@ static double share_of(const snow_transfer_builder *builder, double low,
                        double high, double value) {
     if (!builder->around_0 || !(low < 0) || !(high > 0))
         return snow_share_on(builder->scale, low, high, value);
-    return value < 0
-               ? snow_share_on(builder->scale, low, 0, value) / 2
-               : 0.5 + snow_share_on(builder->scale, 0, high, value) / 2;
+    return value < 0 ? snow_share_on(builder->scale, low, 0, value) / 2
+                     : 0.5 + snow_share_on(builder->scale, 0, high, value) / 2;
 }
 
 void snow_transfer_builder_reverse(snow_transfer_builder *builder) {

@@ -417,8 +417,7 @@ static snow_status read_look(snow_context *context, const snow_look *given,
         SNOW_TRY(SNOW_RECORD_READ(context, snow_look, look->base, &out->base));
         out->look.base = &out->base;
     }
-    out->reversed =
-        look->colormap && snow_colormap_is_reversed(look->colormap);
+    out->reversed = look->colormap && snow_colormap_is_reversed(look->colormap);
     if (out->reversed)
         out->look.colormap = NULL;
     return SNOW_STATUS_OK;

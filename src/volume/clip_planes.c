@@ -17,9 +17,9 @@ snow_status snow_planes_check(snow_context *context, const double *planes,
     for (size_t n = 0; n < count; n++) {
         const double *p = planes + 4 * n;
         const bool has_normal = p[0] != 0 || p[1] != 0 || p[2] != 0;
-        if (!snow_is_plane(p) || (has_normal && isfinite(p[0]) &&
-                                  isfinite(p[1]) && isfinite(p[2]) &&
-                                  isfinite(p[3])))
+        if (!snow_is_plane(p) ||
+            (has_normal && isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]) &&
+             isfinite(p[3])))
             continue;
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "clip plane %zu is %g %g %g %g; give finite numbers, "

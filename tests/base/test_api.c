@@ -14,7 +14,7 @@
     for (int i = 0; snow_##word##_name((snow_##word)i); i++)                 \
         assert_int_equal(                                                    \
             snow_##word##_from_name(snow_##word##_name((snow_##word)i)), i); \
-    assert_null(snow_##word##_name((snow_##word)-1));                        \
+    assert_null(snow_##word##_name((snow_##word) - 1));                      \
     assert_null(snow_##word##_name((snow_##word)1000));                      \
     assert_int_equal(snow_##word##_from_name(NULL), -1);                     \
     assert_int_equal(snow_##word##_from_name("nothing"), -1)
@@ -96,8 +96,8 @@ static void a_text_that_is_null_is_none(void **state) {
     assert_true(strlen(snow_context_message(NULL)) > 0);
 }
 
-#define NO_PATH(call)                                              \
-    assert_int_equal(call, SNOW_STATUS_BAD_USAGE);                 \
+#define NO_PATH(call)                              \
+    assert_int_equal(call, SNOW_STATUS_BAD_USAGE); \
     assert_non_null(strstr(snow_context_message(context), "NULL"))
 
 static void a_path_that_is_null_is_refused(void **state) {
@@ -146,8 +146,7 @@ static snow_status wrap_spacing(snow_context *context, double spacing) {
 
 static void wrapped_voxels_take_a_spacing_or_three_rows(void **state) {
     static const uint8_t voxels[8] = {0};
-    static const double rows[3][4] = {
-        {0, 2, 0, 5}, {3, 0, 0, 6}, {0, 0, 4, 7}};
+    static const double rows[3][4] = {{0, 2, 0, 5}, {3, 0, 0, 6}, {0, 0, 4, 7}};
     snow_context *context = support_context();
     snow_volume_info info = {
         .size = sizeof info, .dims = {2, 2, 2}, .type = SNOW_TYPE_UINT8};
@@ -155,8 +154,7 @@ static void wrapped_voxels_take_a_spacing_or_three_rows(void **state) {
     (void)state;
     assert_int_equal(wrap_spacing(context, 2.5), SNOW_STATUS_OK);
     assert_int_equal(wrap_spacing(context, -1), SNOW_STATUS_BAD_USAGE);
-    assert_int_equal(wrap_spacing(context, (double)NAN),
-                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(wrap_spacing(context, (double)NAN), SNOW_STATUS_BAD_USAGE);
     memcpy(info.matrix, rows, sizeof rows);
     assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
                      SNOW_STATUS_OK);
@@ -288,9 +286,9 @@ static void a_cleared_recipe_is_a_new_one(void **state) {
     assert_string_equal(recipe.input, "a.nrrd");
     snow_recipe_clear(&recipe);
     assert_null(recipe.input);
-    assert_int_equal(snow_recipe_write(context, &recipe, cleared,
-                                       sizeof cleared, &length),
-                     SNOW_STATUS_OK);
+    assert_int_equal(
+        snow_recipe_write(context, &recipe, cleared, sizeof cleared, &length),
+        SNOW_STATUS_OK);
     assert_int_equal(
         snow_recipe_write(context, &other, fresh, sizeof fresh, &length),
         SNOW_STATUS_OK);

@@ -2,8 +2,8 @@
  * serial one, whatever the number of ranks, the cut, the view and the method.
  */
 #include "support/failing.h"
-#include "support/scenario.h"
 #include "support/files.h"
+#include "support/scenario.h"
 
 #include <math.h>
 

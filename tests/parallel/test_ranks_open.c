@@ -1,8 +1,8 @@
 /* tests/parallel/test_ranks_open.c - many ranks open one file: each gets its
  * part of it, whole and with its ghosts, and little more is read than there is.
  */
-#include "support/opened.h"
 #include "support/files.h"
+#include "support/opened.h"
 
 #include "classify/count_interesting.h"
 #include "render/ghosts.h"
@@ -561,7 +561,7 @@ static const char *put_ramp(support_files *place, int side, int slices,
                                     ? i >> 16
                                     : i * i * 2654435761U >> 24);
     const char *data = support_write(place, "ramp", values,
-                                         count * (floats ? sizeof *values : 1));
+                                     count * (floats ? sizeof *values : 1));
     free(values);
     snprintf(header, sizeof header,
              "NRRD0004\ntype: %s\ndimension: 3\nsizes: %d %d %d\n"
@@ -570,8 +570,7 @@ static const char *put_ramp(support_files *place, int side, int slices,
     const char *path =
         support_write(place, "ramp.nhdr", header, strlen(header));
     snprintf(command, sizeof command, "gzip -c1 '%s' >>'%s'", data,
-             kind == PACKED_NOISE ? path
-                                  : support_path(place, "ramp.gz"));
+             kind == PACKED_NOISE ? path : support_path(place, "ramp.gz"));
     assert_int_equal(kind != PLAIN_BESIDE ? system(command) : 0, 0);
     return path;
 }
@@ -617,8 +616,7 @@ static void packed_data_are_not_read_in_slabs(void **state) {
         o.path = path;
         o.memory = limited ? UINT64_C(1) << 30 : 0;
         open_by(place, &o, 1);
-        assert_int_equal(stat(support_path(place, names[kind]), &about),
-                         0);
+        assert_int_equal(stat(support_path(place, names[kind]), &about), 0);
         const uint64_t twice = 2 * (uint64_t)about.st_size + 4 * 65536;
         assert_int_equal(o.read[0] <= twice, kind != PLAIN_BESIDE || !limited);
         snow_volume_close(whole);

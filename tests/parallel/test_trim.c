@@ -1,8 +1,8 @@
 /* tests/parallel/test_trim.c - parts that lack what the look of their opening
  * shows nothing of: pictures have the same bits, and other looks are refused.
  */
-#include "support/opened.h"
 #include "support/files.h"
+#include "support/opened.h"
 
 #include "classify/hidden.h"
 #include "decompose/partition.h"

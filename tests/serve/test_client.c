@@ -229,10 +229,10 @@ static void two_pictures_are_under_way(void **state) {
     outbox_free(box);
 }
 
-/* On a thin link: a few at a time, and the rest not at all where another picture
- * follows. */
-static void the_picture_at_rest_goes_in_parts_that_can_be_dropped(
-    void **state) {
+/* On a thin link: a few at a time, and the rest not at all where another
+ * picture follows. */
+static void
+the_picture_at_rest_goes_in_parts_that_can_be_dropped(void **state) {
     (void)state;
     const size_t bytes = 5 * CLIENT_PART_BYTES + 100;
     outbox *box = outbox_new(wake_nobody, NULL);
@@ -363,8 +363,7 @@ int main(void) {
         cmocka_unit_test(texts_with_a_topic_replace_in_place),
         cmocka_unit_test(n_is_the_newest_that_a_revision_has),
         cmocka_unit_test(two_pictures_are_under_way),
-        cmocka_unit_test(
-            the_picture_at_rest_goes_in_parts_that_can_be_dropped),
+        cmocka_unit_test(the_picture_at_rest_goes_in_parts_that_can_be_dropped),
         cmocka_unit_test(a_picture_goes_in_pieces_with_the_own_n),
         cmocka_unit_test(a_link_is_thin_while_pictures_wait),
         cmocka_unit_test(too_much_that_waits_is_noted),

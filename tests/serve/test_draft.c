@@ -59,8 +59,8 @@ static void sizes_do_not_alternate(void **state) {
         }
 }
 
-/* Of 3840 x 2160 pixels packing takes twice as long as drawing, which alone would
- * have kept them. */
+/* Of 3840 x 2160 pixels packing takes twice as long as drawing, which alone
+ * would have kept them. */
 static void packing_counts(void **state) {
     (void)state;
     const double drawn = 0.02, packed = 0.04;

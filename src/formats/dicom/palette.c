@@ -5,8 +5,8 @@
  *   stored value   .. first  first + 1  ...  first + count - 1 ..
  *   entry          0  0      1               count - 1          count - 1
  *
- * Tables may be written in segments (C.7.9.2): entries, a straight line from the
- * entry before, or segments that stand earlier once more.
+ * Tables may be written in segments (C.7.9.2): entries, a straight line from
+ * the entry before, or segments that stand earlier once more.
  *
  * The volume has three channels, as of RGB, of 0 to 255. */
 #include "base/minmax.h"
@@ -84,8 +84,7 @@ typedef struct segments {
 } segments;
 
 static unsigned number_of(const segments *s, size_t at) {
-    return s->size == 1 ? s->bytes[at]
-                        : word_of(s->reader, s->bytes + 2 * at);
+    return s->size == 1 ? s->bytes[at] : word_of(s->reader, s->bytes + 2 * at);
 }
 
 static bool add_entries(segments *s, size_t at, size_t length) {

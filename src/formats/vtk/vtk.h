@@ -22,8 +22,8 @@ typedef struct vtk_grid {
 /* An array of values in a file. */
 typedef struct vtk_array {
     char name[256];
-    bool cells; /* a value for each cell between points, otherwise for each
-                   point */
+    bool cells;   /* a value for each cell between points, otherwise for each
+                     point */
     bool vectors; /* of space, says the file */
     snow_type type;
     int64_t channels;
