@@ -359,7 +359,9 @@ static void close_all(viewer *v) {
     packer_free(v->pack);
     drawing_close(&v->drawing);
     folder_free(v->folder);
-    listener_free(v->listener); /* tells the job of the pages that it closes */
+    job_end(
+        v->job); /* wakes the listener, which tells it of pages that close */
+    listener_free(v->listener);
     job_free(v->job);
     json_decref(v->drawing.offer);
     outbox_free(v->box);

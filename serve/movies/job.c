@@ -263,7 +263,7 @@ movie_job *job_new(outbox *box) {
     return j;
 }
 
-void job_free(movie_job *j) {
+void job_end(movie_job *j) {
     if (!j)
         return;
     pthread_mutex_lock(&j->lock);
@@ -272,7 +272,14 @@ void job_free(movie_job *j) {
     pthread_mutex_unlock(&j->lock);
     if (j->threaded)
         pthread_join(j->thread, NULL);
+    j->threaded = false;
     folder_remove(&j->folder);
+}
+
+void job_free(movie_job *j) {
+    if (!j)
+        return;
+    job_end(j);
     free(j->command);
     pthread_cond_destroy(&j->changed);
     pthread_mutex_destroy(&j->lock);

@@ -26,7 +26,9 @@ typedef struct movie_job movie_job;
 /* NULL: no memory. */
 movie_job *job_new(outbox *box);
 
-/* Ends what is under way; NULL is accepted. */
+/* Ends what is under way; the job stays for those who know it.  Both accept
+ * NULL. */
+void job_end(movie_job *j);
 void job_free(movie_job *j);
 
 /* What pages can order: {"formats": ["mp4", ...], "note": "..."}, of which the
