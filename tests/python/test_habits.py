@@ -286,9 +286,9 @@ class Progress(InFolder):
                 ("read", lambda told: sg.render(
                     "phantom:turbulence", dims=(180,) * 3, size=24, progress=told)),
                 ("render", lambda told: volume.render(
-                    size=2400, quality="high", threads=1, progress=told)),
+                    size=4000, quality="high", threads=1, progress=told)),
                 ("render", lambda told: volume.project(
-                    "sum", size=2400, quality="high", threads=1,
+                    "sum", size=4000, quality="high", threads=1,
                     progress=told)),
                 ("write", lambda told: volume.save("v.nii.gz", progress=told)),
                 ("write", lambda told: picture.save("p.png", progress=told)),
