@@ -147,6 +147,15 @@ for name in named still; do
         -s 200 --legend -q -o ${name}_%d.png
 done
 same_file "names its labels" named_0.png still_0.png
+# The name of an overlay's file, which may be a patient's, is in no picture.
+for name in doe_jane other; do
+    cp ball.nrrd $name.nrrd
+done
+for way in render "slice --axis y"; do
+    pairs png $way ball.nrrd --overlay-look hot --legend -s 300 <<END
+$way names no file | --overlay doe_jane.nrrd | = | --overlay other.nrrd
+END
+done
 refused 3 "other steps" 'over.nii: holds 3 time steps, and the volume 1' \
     "$TOOL" render w.nrrd -o z.png --overlay over.nii
 
