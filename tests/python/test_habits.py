@@ -285,10 +285,11 @@ class Progress(InFolder):
                     "phantom:turbulence", dims=(180,) * 3, progress=told)),
                 ("read", lambda told: sg.render(
                     "phantom:turbulence", dims=(180,) * 3, size=24, progress=told)),
-                ("render", lambda told: volume.render(
-                    size=4000, quality="high", threads=1, progress=told)),
-                ("render", lambda told: volume.project(
-                    "sum", size=4000, quality="high", threads=1,
+                # Anew each time: what a volume keeps makes the next call quick.
+                ("render", lambda told: sg.Volume(noise).render(
+                    size=6000, quality="high", threads=1, progress=told)),
+                ("render", lambda told: sg.Volume(noise).project(
+                    "sum", size=8000, quality="high", threads=1,
                     progress=told)),
                 ("write", lambda told: volume.save("v.nii.gz", progress=told)),
                 ("write", lambda told: picture.save("p.png", progress=told)),
