@@ -135,8 +135,22 @@ static void copy_meaning(PyObject *like, snow_volume_info *info) {
         snow_volume_get_info(((volume_object *)like)->volume);
     memcpy(info->modality, known->modality, sizeof info->modality);
     memcpy(info->window, known->window, sizeof info->window);
+    memcpy(info->quantity, known->quantity, sizeof info->quantity);
+    memcpy(info->value_unit, known->value_unit, sizeof info->value_unit);
+    memcpy(info->description, known->description, sizeof info->description);
     info->hounsfield = known->hounsfield;
     info->eight_bits = known->eight_bits;
+}
+
+/* Copies a text to a room, of which a longer one fills all but whole letters of
+ * UTF-8. */
+static void keep(char *to, size_t size, const char *text) {
+    size_t length = strlen(text);
+    if (length >= size)
+        for (length = size - 1; length && (text[length] & 0xc0) == 0x80;)
+            length--;
+    memcpy(to, text, length);
+    to[length] = 0;
 }
 
 /* Over a C contiguous array (z, y, x) of the caller, whose own array has its
@@ -145,13 +159,14 @@ static PyObject *volume_wrap(PyObject *module, PyObject *args) {
     PyObject *type, *array, *matrix, *like, *window = Py_None;
     double slope, intercept;
     int medical, alike = 1;
-    const char *unit;
+    const char *unit, *quantity = NULL, *value_unit = "", *description = "";
     snow_status status;
     (void)module;
     int order[3];
-    if (!PyArg_ParseTuple(args, "OO(iii)OddpsO|pO", &type, &array, &order[0],
-                          &order[1], &order[2], &matrix, &slope, &intercept,
-                          &medical, &unit, &like, &alike, &window))
+    if (!PyArg_ParseTuple(args, "OO(iii)OddpsO|pO(sss)", &type, &array,
+                          &order[0], &order[1], &order[2], &matrix, &slope,
+                          &intercept, &medical, &unit, &like, &alike, &window,
+                          &quantity, &value_unit, &description))
         return NULL;
     volume_object *o = volume_begin(type, like);
     if (!o)
@@ -180,7 +195,12 @@ static PyObject *volume_wrap(PyObject *module, PyObject *args) {
     info.slope = slope;
     info.intercept = intercept;
     info.medical = medical;
-    strncpy(info.unit, unit, sizeof info.unit - 1);
+    keep(info.unit, sizeof info.unit, unit);
+    if (quantity) {
+        keep(info.quantity, sizeof info.quantity, quantity);
+        keep(info.value_unit, sizeof info.value_unit, value_unit);
+        keep(info.description, sizeof info.description, description);
+    }
     if (!context_enter(o->context, Py_None))
         goto failed;
     CALL(o->context, status,
@@ -347,9 +367,11 @@ static PyObject *axes_of_info(const snow_volume_info *i) {
     for (int n = 0; list && n < 3; n++) {
         const char *own = i->axis_unit[n];
         const double scale = i->axis_scale[n];
-        PyObject *one = Py_BuildValue(
-            "(O&d)", text_of, !*own ? i->unit : strcmp(own, "1") ? own : "",
-            scale < 0 || scale > 0 ? scale : 1.0);
+        PyObject *one = Py_BuildValue("(O&d)", text_of,
+                                      !*own              ? i->unit
+                                      : strcmp(own, "1") ? own
+                                                         : "",
+                                      scale < 0 || scale > 0 ? scale : 1.0);
         if (!one || PyList_Append(list, one))
             Py_CLEAR(list);
         Py_XDECREF(one);
@@ -559,16 +581,15 @@ static PyObject *volume_measure(PyObject *self, PyObject *args) {
     PyObject *list = PyList_New(0);
     for (int n = 0; list && !status; n++) {
         snow_measure one = {.size = sizeof one};
-        status =
-            snow_measure_read(o->context->context, text, n, info, &one);
+        status = snow_measure_read(o->context->context, text, n, info, &one);
         if (!status && one.kind == SNOW_MEASURE_NONE)
             break;
         if (!status)
             CALL(o->context, status, snow_measure_values(o->volume, &one));
         PyObject *item =
             status ? NULL
-                   : measure_of(&one, index < 0 ||
-                                          lies_in(info, &one, axis, index));
+                   : measure_of(&one,
+                                index < 0 || lies_in(info, &one, axis, index));
         if (!status && (!item || PyList_Append(list, item)))
             Py_CLEAR(list);
         Py_XDECREF(item);

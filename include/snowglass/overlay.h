@@ -70,6 +70,13 @@ SNOW_API snow_status snow_overlay_box(snow_overlay *overlay,
 SNOW_API bool snow_time_text(
     const snow_volume_info *info, const char *format, char *out, size_t room);
 
+/* Puts into `value` the time that a date such as "2000-01-31 12:00:00" means in
+ * the volume's time unit and calendar. Hours, minutes and seconds may be left
+ * out. Returns false, and leaves `value` as it was, where the unit counts from
+ * no date, or where the calendar has no such day. */
+SNOW_API bool snow_time_value(
+    const snow_volume_info *info, const char *date, double *value);
+
 /* Adds lines of text, upper left, on sides of at least 64 pixels. */
 SNOW_API snow_status snow_overlay_title(
     snow_overlay *overlay, const char *text);

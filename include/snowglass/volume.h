@@ -187,9 +187,9 @@ SNOW_API snow_status snow_volume_open_with(snow_context *context,
 /* Makes a volume over the caller's voxels, which are not copied and must stay
  * as long as the volume. Of `info` these fields count: dims, type, matrix (last
  * row 0 0 0 0 or 0 0 0 1; all zeros: by spacing), spacing (0: 1), slope (0: 1),
- * intercept, medical, unit, modality, window, value_unit, hounsfield,
- * eight_bits and whole. Where the matrix is given, spacing is measured from it.
- * Time and channels are not taken. */
+ * intercept, medical, unit, modality, window, quantity, value_unit,
+ * description, hounsfield, eight_bits and whole. Where the matrix is given,
+ * spacing is measured from it. Time and channels are not taken. */
 SNOW_API snow_status snow_volume_wrap(snow_context *context,
     const snow_volume_info *info, const void *voxels, snow_volume **out);
 

@@ -134,10 +134,13 @@ static void print_times(const facts *f) {
     if (info->times > 1)
         printf("%-14s%" PRId64 " (these values: step %" PRId64 ")\n", "times",
                info->times, info->time);
+    char date[128] = "";
+    if (strstr(info->time_unit, " since "))
+        snow_time_text(info, "%Y-%m-%d %H:%M:%S", date, sizeof date);
     if (!isnan(info->time_value))
-        printf("%-14s%.10g%s%s%s%s%s\n", "time", info->time_value,
-               *info->time_unit ? " " : "", info->time_unit,
-               *info->calendar ? " (" : "", info->calendar,
+        printf("%-14s%.10g%s%s%s%s%s%s%s\n", "time", info->time_value,
+               *info->time_unit ? " " : "", info->time_unit, *date ? ": " : "",
+               date, *info->calendar ? " (" : "", info->calendar,
                *info->calendar ? " calendar)" : "");
 }
 

@@ -53,8 +53,6 @@ double world_ratio(const snow_volume_info *info, int axis, const char *unit) {
     const double length = snow_unit_length(own, NULL), pressure = pascals(own);
     if (strcmp(unit, own) == 0 || (!*own && strcmp(unit, "mm") == 0))
         return *unit ? 1 : 0;
-    if (!*info->axis_unit[axis])
-        return 0;
     return length > 0     ? snow_unit_length(unit, NULL) / length
            : pressure > 0 ? pascals(unit) / pressure
                           : 0;

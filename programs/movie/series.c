@@ -23,7 +23,7 @@ typedef struct step_times {
     const step_files *files; /* NULL: the steps of `path` */
     const char *path;
     int64_t count;
-    char unit[64];
+    snow_volume_info at; /* of the step looked at last */
 } step_times;
 
 /* Reads the time of a step from its header. */
@@ -40,7 +40,7 @@ static int time_of(step_times *times, int64_t step, double *out) {
     if (status != SNOW_STATUS_OK)
         return fail_status(times->context, status);
     *out = info.time_value;
-    memcpy(times->unit, info.time_unit, sizeof times->unit);
+    times->at = info;
     return isnan(*out) ? fail_usage("--time: the input has no physical times; "
                                     "give the number of a step, from 0")
                        : CONTINUE;
@@ -76,15 +76,25 @@ static double seconds_of(const char *unit) {
 /* The wanted time in the unit of the input. */
 static int wanted_time(const step_times *times, double *out) {
     const options *opts = times->opts;
-    double given = seconds_of(opts->moment_unit);
-    double own = seconds_of(times->unit);
+    const char *unit = times->at.time_unit;
+    if (opts->date)
+        return snow_time_value(&times->at, opts->date, out)
+                   ? CONTINUE
+                   : fail_usage(
+                         "--time: %s is no date of the input, whose "
+                         "times are in \"%s\"%s%s%s; give a date such as "
+                         "2005-08-28 06:00, or the number of a step",
+                         opts->date, unit,
+                         *times->at.calendar ? " (calendar " : "",
+                         times->at.calendar, *times->at.calendar ? ")" : "");
+    double given = seconds_of(opts->moment_unit), own = seconds_of(unit);
     *out = opts->moment;
-    if (!*opts->moment_unit || !*times->unit)
+    if (!*opts->moment_unit || !*unit)
         return CONTINUE;
     if (given == 0 || own == 0)
         return fail_usage("--time: the unit \"%s\" cannot be compared with "
                           "the input's \"%s\"; give the number of a step",
-                          opts->moment_unit, times->unit);
+                          opts->moment_unit, unit);
     *out *= given / own;
     return CONTINUE;
 }
@@ -126,6 +136,7 @@ static int nearest_of_rising(step_times *times, double wanted, int64_t *out) {
 }
 
 static int nearest(step_times *times, int64_t *out) {
+    char text[128] = "";
     double first, wanted;
     int done = time_of(times, 0, &first);
     if (done == CONTINUE)
@@ -136,9 +147,10 @@ static int nearest(step_times *times, int64_t *out) {
                                      : nearest_of_rising(times, wanted, out);
     if (done == CONTINUE)
         done = time_of(times, *out, &first);
-    if (done == CONTINUE && times->opts->verbosity >= 0)
-        say("step %" PRId64 " of %" PRId64 " is the nearest, at %g%s%s", *out,
-            times->count, first, *times->unit ? " " : "", times->unit);
+    if (done == CONTINUE && times->opts->verbosity >= 0 &&
+        snow_time_text(&times->at, NULL, text, sizeof text))
+        say("step %" PRId64 " of %" PRId64 " is the nearest, at %s", *out,
+            times->count, text);
     return done;
 }
 

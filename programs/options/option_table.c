@@ -212,8 +212,8 @@ const option_row option_table[] = {
     {"time", 0, "N|last|A:B|TIME", TOPIC_DATA, INPUT, read_time, FIELD(time), 0,
      0, "time step of a file or series with several: from 0, or from -1, which is "
      "last, at the end; a movie takes A up to, not including, B; a number with "
-     "a point or a unit, such as 0.3s, takes the step nearest to that physical "
-     "time (default 0; movie: all)"},
+     "a point or a unit, such as 0.3s, or a date, such as 2005-08-28, takes the "
+     "step nearest to that time (default 0; movie: all)"},
     {"dataset", 0, "PATH", TOPIC_DATA, INPUT, read_text, FIELD(dataset), 0, 0,
      "array to read from a file with several: path or name, the level of an "
      "OME-Zarr image, or an image of an OME-TIFF by name or number (default: the "

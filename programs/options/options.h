@@ -112,6 +112,7 @@ typedef struct options {
     bool time_range;       /* `time` is the first of several */
     double moment;         /* physical time of the step; NaN: not given */
     char moment_unit[16];  /* "" or as s, ms, h */
+    const char *date;      /* in place of both; NULL: not given */
     char *input[1];        /* the operand, where it was a pattern of files */
     int64_t channel;       /* the first of the list, or the only one */
     channel_list channels; /* none: all that the file shows, or the first */

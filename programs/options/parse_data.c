@@ -56,11 +56,16 @@ static bool read_moment(const char *text, options *out) {
 bool read_time(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
     options *out = (options *)(void *)((char *)field - row->field);
-    const char *colon = strchr(text, ':');
     int64_t value = 0;
+    int year, month, day;
+    const bool dated = sscanf(text, "%4d-%2d-%2d", &year, &month, &day) == 3;
+    const char *colon = dated ? NULL : strchr(text, ':');
+    out->date = dated ? text : NULL;
     out->time = 0;
     out->time_range = colon != NULL;
-    out->moment = NAN;
+    out->moment = dated ? 0 : NAN;
+    if (dated)
+        return true;
     if (colon ? read_bound(text, (size_t)(colon - text), 0, &out->time) &&
                     read_bound(colon + 1, strlen(colon + 1), INT64_MAX,
                                &out->time_end)
@@ -76,7 +81,7 @@ bool read_time(const option_row *row, const char *text, void *field,
         return true;
     return parse_refuse(wrong,
                         "is not a time step; give its number, last, a range "
-                        "such as 2:8, or a time such as 0.3s");
+                        "such as 2:8, or a time such as 0.3s or 2005-08-28");
 }
 
 /* There is no upper limit: the library checks the product, and the memory. */

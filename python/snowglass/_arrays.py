@@ -20,8 +20,8 @@ class Wrapped(NamedTuple):
     medical: bool
     unit: str
     frozen: bool
-    values: Optional[str]    #: the unit of data values, where it is known
     window: Optional[tuple[float, float]]  #: that the image asks for
+    meaning: tuple[str, str, str]  #: the values' name, unit and description
 
 
 #: What `wrap` takes beside the array.
@@ -62,7 +62,7 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
          copy: Optional[bool] = None, frozen: bool = True) -> Wrapped:
     """Any source as an array, and its place in the world."""
     import numpy
-    values: Optional[str] = None
+    meaning = _meaning_of(source)
     window = _window_of(source) if _is_nibabel(source) else None
     given_place = affine is not None
     if _is_nibabel(source):
@@ -75,11 +75,8 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
         else:
             source = numpy.asanyarray(source.dataobj)
     elif _is_xarray(source):
-        values = str(source.attrs.get("units", "")) or None
         source, spacing, axes, unit, affine = _of_xarray(source, spacing, axes,
                                                          unit, affine)
-    elif hasattr(source, "attrs"):  # of HDF5, Zarr
-        values = _text_of(source.attrs.get("units"))
     array = _to_array(source)
     if given_place and axes in (None, "xyz") and _is_fortran(array):
         if axes is None:
@@ -124,7 +121,7 @@ def wrap(source: Any, *, spacing: Any = None, affine: Any = None,
     return Wrapped(array, order, axes, [float(each) for each in placed.ravel()],
                    slope, _checks.number("intercept", intercept, "a finite number"),
                    bool(medical), _cut(_checks.text("unit", unit, UNIT) or ""),
-                   frozen, values, window)
+                   frozen, window, meaning)
 
 
 def _is_fortran(array: Any) -> bool:
@@ -148,9 +145,22 @@ def _without_ones(array: Any, axes: str) -> Any:
     return array
 
 
-def _text_of(unit: Any) -> Optional[str]:
-    return (unit.decode(errors="replace") if isinstance(unit, bytes)
-            else unit if isinstance(unit, str) else "") or None
+def _meaning_of(source: Any) -> tuple[str, str, str]:
+    """Name, unit and description that an array of xarray, HDF5, Zarr or netCDF4 has
+    of its values, as snow_cf_name takes them from files."""
+    said: Any = getattr(source, "attrs", None)
+    if hasattr(source, "ncattrs"):
+        said = {name: source.getncattr(name) for name in source.ncattrs()}
+    if said is None or not hasattr(said, "get"):
+        return "", "", ""
+
+    def text(value: Any) -> str:
+        if isinstance(value, bytes):
+            value = value.decode(errors="replace")
+        return value.replace("\0", "") if isinstance(value, str) else ""
+    name = text(getattr(source, "name", None)).rpartition("/")[2]
+    return name, text(said.get("units")), \
+        text(said.get("long_name")) or text(said.get("standard_name"))
 
 
 def columns_of(order: Sequence[int], axes: str) -> list[int]:
@@ -231,6 +241,8 @@ def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
     # Times and the like, of which there is one.
     source = source.squeeze([name for name in source.dims if source.sizes[
         name] == 1][:max(source.ndim - 3, 0)])
+    if source.ndim == 2:  # a map: one slice
+        source = source.expand_dims("one slice")
     names = [str(name) for name in source.dims]
     if axes is None:
         axes = "".join(names) if sorted(names) == ["x", "y", "z"] else "zyx"
@@ -238,7 +250,8 @@ def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
         affine, found = _place_of(source, dict(zip(axes, names)))
         unit = unit or found
     for name in names[:-2]:
-        if name == "time" or source[name].dtype.kind in "mM":
+        if source.sizes[name] > 1 and (
+                name == "time" or source[name].dtype.kind in "mM"):
             warn(f"dimension '{name}' is drawn as a direction of space: "
                  f".isel({name}=0) chooses one step")
     return source, spacing, axes, unit, affine

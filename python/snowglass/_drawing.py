@@ -160,7 +160,7 @@ class Drawing:
         made = _snowglass.clipped(Volume, self.whole, planes)
         made._planes = planes
         made._axes, made._order = self.whole._axes, self.whole._order
-        made._values, made._one = self.whole._values, self.whole._one
+        made._one = self.whole._one
         if self.whole._mixed is not None:
             made._mixed = self.whole._mixed.mapped(
                 self.whole, lambda each: _snowglass.clipped(

@@ -93,7 +93,8 @@ def open(type: Type[V], path: bytes, fields: Mapping[str, Any], clip: Any,
 def wrap(type: Type[V], array: Any, order: Sequence[int],
          matrix: Sequence[float], slope: float, intercept: float, medical: bool,
          unit: str, like: Optional[Volume], alike: bool = ...,
-         window: Optional[Sequence[float]] = ...) -> V: ...
+         window: Optional[Sequence[float]] = ...,
+         meaning: tuple[str, str, str] = ...) -> V: ...
 def masked(type: Type[V], volume: Volume, mask: Volume,
            labels: Optional[str], progress: Progress = ...) -> V: ...
 def clipped(type: Type[V], volume: Volume, planes: Sequence[Sequence[float]]

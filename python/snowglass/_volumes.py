@@ -73,7 +73,6 @@ class Volume(_snowglass.Volume):
     """
     _axes: str = "zyx"                       # of the array
     _order: tuple[int, ...] = (0, 1, 2)      # of its dimensions in memory
-    _values: Optional[str] = None            # unit of the data values
 
     @takes(Source)
     def __new__(cls, source: Any, **given: Unpack[Source]) -> "Volume":
@@ -89,9 +88,8 @@ class Volume(_snowglass.Volume):
         one = _arrays.wrap(source, **options)
         made = _snowglass.wrap(cls, one.array, one.order, one.matrix, one.slope,
                                one.intercept, one.medical, one.unit, None, True,
-                               one.window)
+                               one.window, one.meaning)
         made._axes, made._order = one.axes, one.order
-        made._values = one.values
         made._frozen = one.frozen
         if one.frozen:
             made._freeze()
@@ -374,7 +372,7 @@ class Volume(_snowglass.Volume):
                 self, lambda each: _snowglass.masked(_snowglass.Volume, each,
                                                      other, picked))
         made._axes, made._order = self._axes, self._order
-        made._values, made._one = self._values, self._one
+        made._one = self._one
         return made
 
     def look(self, look: Union[Look, str, None] = None, *,
@@ -616,10 +614,10 @@ class Volume(_snowglass.Volume):
         quantity = title.rstrip(" ") or quantity
         if unit:
             return f"{quantity} ({unit})" if quantity else unit
-        unit = self._values or info["value_unit"]
-        if not self._values and (info["hounsfield"] or info["medical"] and
-                                 not info["modality"] and
-                                 self._statistics(None)["hounsfield"]):
+        unit = info["value_unit"]
+        if not unit and (info["hounsfield"] or info["medical"] and
+                         not info["modality"] and
+                         self._statistics(None)["hounsfield"]):
             unit = "HU"
         if quantity and unit:
             return f"{quantity} ({unit})"
@@ -906,7 +904,6 @@ class Volume(_snowglass.Volume):
             Volume, numpy.ascontiguousarray(voxels), (0, 1, 2),
             matrix.ravel().tolist(), info["slope"], info["intercept"],
             info["medical"], info["unit"], self)
-        made._values = self._values
         return made
 
     def _axis_name(self, axis: Union[str, int]) -> str:
@@ -1175,12 +1172,17 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
     """A picture of a file, an array or a Volume; `open` holds options of Volume,
     which may be given beside it, but for `unit`; the others are those of Volume.render, or keys of a recipe: what
     `Image.recipe` gives and the command line saves, `render(**recipe)` draws,
-    with the same bits.  What such a file says of its output is left out.  Of a
+    with the same bits.  A title is drawn when the picture is saved.  What such a
+    file says of its output is left out, annotate and box with a warning.  Of a
     Volume clip, crop, time, channel, component and labels are taken, as its
     viewer has them: a crop counts the Volume's voxels, and a file is read again.
     With an axis it is a recipe of a slice, which Volume.slice draws."""
     keys = dict(given)
     opened: Any = keys.pop("open", None) or {}
+    for name in ("annotate", "box"):
+        if keys.get(name):
+            warn(f"{name} is not drawn by Python: 'snowglass render' draws it")
+    title = _checks.text("title", keys.get("title"), "a line of text")
     data, colors, options = _recipes.split(keys)
     sliced = "axis" in options or "at" in options
     if sliced:
@@ -1197,11 +1199,16 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
     else:
         from . import _drawing
         volume = _drawing.part(volume, {**data, **opened})
+    if look is None:
+        look = colors
     if sliced:
-        return volume.slice(look=colors if look is None else look, **options)
-    options = _recipes.with_lengths(options, volume.info["unit"])
-    return volume.render(  # a key that no picture has is refused there
-        colors if look is None else look, **options)
+        image = volume.slice(look=look, **options)
+    else:  # a key that no picture has is refused there
+        image = volume.render(
+            look, **_recipes.with_lengths(options, volume.info["unit"]))
+    if title:
+        image._annotations = {**image._annotations, "title": title}
+    return image
 
 
 class Step(Volume):

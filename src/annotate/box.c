@@ -4,6 +4,7 @@
  * that is seen lies before everything; one of two others lies behind, and is
  * drawn only where the picture is clear.  An axis has its ticks along an edge
  * of the outline: one face of it is seen, and one is not. */
+#include "annotate/length.h"
 #include "annotate/strokes.h"
 #include "base/vec3.h"
 #include "image/image.h"
@@ -163,6 +164,12 @@ static void name_axis(const box_view *b, int axis, box_axis *out) {
     for (int end = 0; end < 2; end++)
         out->from[end] =
             first + step * (end ? (double)info->dims[axis] - 0.5 : -0.5);
+    /* Numbers of up to four digits stay. */
+    const double most = fmax(fabs(out->from[0]), fabs(out->from[1]));
+    const double factor =
+        most >= 10000 ? snow_length_factor(most, 1000, &unit) : 1;
+    for (int end = 0; end < 2; end++)
+        out->from[end] *= factor;
     snprintf(out->name, sizeof out->name, "%c%s%s%s",
              world < 0 ? "ijk"[axis] : "xyz"[world], *unit ? " (" : "", unit,
              *unit ? ")" : "");

@@ -1,5 +1,6 @@
 /* annotate/legend.c - explains the lengths of a picture, and names it: a scale
  * bar, lines of text. */
+#include "annotate/length.h"
 #include "annotate/strokes.h"
 
 #include "transfer/scale.h"
@@ -80,24 +81,6 @@ snow_status snow_overlay_title(snow_overlay *overlay, const char *text) {
 
 /* --- the scale bar -------------------------------------------------------- */
 
-/* Uses the unit of a family of units that makes the number 1 to below 1000. */
-static void write_length(double length, const char *unit, char *out,
-                         size_t size) {
-    static const char *const units[] = {"nm", "\xc2\xb5m", "mm", "m"};
-    int at = strcmp(unit, "um") == 0 ? 1 : -1;
-    if (strcmp(unit, "angstrom") == 0)
-        unit = "\xc3\x85";
-    for (int i = 0; i < 4; i++)
-        if (strcmp(unit, units[i]) == 0)
-            at = i;
-    for (; at >= 0 && at < 3 && length >= 1000; at++)
-        length /= 1000;
-    for (; at > 0 && length < 1; at--)
-        length *= 1000;
-    snow_text_print(out, size, "%.4g%s%s", length, *unit ? " " : "",
-                    at < 0 ? unit : units[at]);
-}
-
 /* What stands in its place where the world's z has another scale: how many
  * times it is higher, where both are lengths. */
 static bool write_height(const snow_volume_info *info, char *out, size_t size) {
@@ -145,7 +128,11 @@ snow_status snow_overlay_scale_bar(snow_overlay *overlay,
     double y = floor(overlay->height - 1.2 * height) + 0.5;
     const bool from_above = fabs(camera.back[2]) > 1 - 1e-9;
     if (from_above || !write_height(&volume, text, sizeof text)) {
-        write_length(length * camera.pitch, volume.unit, text, sizeof text);
+        const char *unit = volume.unit;
+        const double world = length * camera.pitch;
+        const double factor = snow_length_factor(world, 1000, &unit);
+        snow_text_print(text, sizeof text, "%.4g%s%s", world * factor,
+                        *unit ? " " : "", unit);
         SNOW_TRY(snow_begin_strokes(overlay, height));
         SNOW_TRY(snow_overlay_stroke(overlay, left, y, right, y));
         SNOW_TRY(snow_overlay_stroke(overlay, left, y - tick, left, y + tick));

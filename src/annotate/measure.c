@@ -1,5 +1,6 @@
 /* annotate/measure.c - lines, angles and ellipses that are measured, in a
  * picture of their volume, with their numbers (render/measure.c finds them). */
+#include "annotate/length.h"
 #include "annotate/strokes.h"
 #include "base/vec3.h"
 #include "transform/transform.h"
@@ -117,10 +118,14 @@ static void write_lines(measure_view *m, const char *value_unit) {
     const snow_measure *measure = m->measure;
     const char *space = *measure->unit ? " " : "", *unit = measure->unit;
     char text[LINE_BYTES];
-    if (measure->kind == SNOW_MEASURE_LINE)
-        snow_text_print(text, sizeof text, "%.4g%s%s", measure->result, space,
-                        unit);
-    else if (measure->kind == SNOW_MEASURE_ANGLE)
+    if (measure->kind == SNOW_MEASURE_LINE) {
+        const double factor =
+            measure->result < 10000
+                ? 1
+                : snow_length_factor(measure->result, 1000, &unit);
+        snow_text_print(text, sizeof text, "%.4g%s%s", measure->result * factor,
+                        space, unit);
+    } else if (measure->kind == SNOW_MEASURE_ANGLE)
         snow_text_print(text, sizeof text, "%.4g\xc2\xb0", measure->result);
     else
         snow_text_print(text, sizeof text, "%.4g%s%s%s, n %lld",

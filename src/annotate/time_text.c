@@ -129,7 +129,7 @@ static double seconds_in(const char *unit, size_t length) {
 /* Seconds that a clock is before that of Greenwich: "+05:30", "-0600", "-6"
  * behind the time of "2000-01-01 00:00:00 -6". */
 static double zone_of(const char *date) {
-    const char *time = strpbrk(date, " T");
+    const char *time = strpbrk(date, " T_");
     const char *sign = time ? strpbrk(time, "+-") : NULL;
     int hours = 0, minutes = 0;
     if (!sign || sscanf(sign + 1, "%2d%*[:]%2d", &hours, &minutes) < 1)
@@ -139,26 +139,40 @@ static double zone_of(const char *date) {
     return (*sign == '-' ? -60.0 : 60.0) * (60 * hours + minutes);
 }
 
-/* The moment that a time means; false for a unit without a date. */
-static bool find_moment(const snow_volume_info *info, moment *out) {
-    const char *since = strstr(info->time_unit, " since ");
-    calendar c = calendar_of(info->calendar);
+/* Reads "2000-01-31 12:00:00", of which the time may lack: its day, and the
+ * seconds of Greenwich since that began. */
+static bool read_date(const char *text, moment *out, double *seconds) {
     long long year;
     double second = 0;
-    if (!since || c == CALENDAR_UNKNOWN)
-        return false;
-    double unit =
-        seconds_in(info->time_unit, (size_t)(since - info->time_unit));
     *out = (moment){0};
-    int found = snow_text_scan(since + 7, "%lld-%d-%d%*[ T]%d:%d:%lf", &year,
-                               &out->month, &out->day, &out->hour, &out->minute,
-                               &second);
-    if (found < 3 || unit == 0 || out->month < 1 || out->month > 12 ||
-        llabs(year) > 1000000)
+    const int found =
+        snow_text_scan(text, "%lld-%d-%d%*[ T_]%d:%d:%lf", &year, &out->month,
+                       &out->day, &out->hour, &out->minute, &second);
+    if (found < 3 || out->month < 1 || out->month > 12 || llabs(year) > 1000000)
         return false;
     out->year = year;
-    double seconds = info->time_value * unit + out->hour * 3600.0 +
-                     out->minute * 60.0 + second - zone_of(since + 7);
+    *seconds = out->hour * 3600.0 + out->minute * 60.0 + second - zone_of(text);
+    return true;
+}
+
+/* The date and the unit in seconds of "hours since 1990-01-01"; false for a
+ * unit without a date. */
+static bool read_unit(const snow_volume_info *info, moment *out,
+                      double *seconds, double *unit) {
+    const char *since = strstr(info->time_unit, " since ");
+    if (!since || calendar_of(info->calendar) == CALENDAR_UNKNOWN)
+        return false;
+    *unit = seconds_in(info->time_unit, (size_t)(since - info->time_unit));
+    return *unit > 0 && read_date(since + 7, out, seconds);
+}
+
+/* The moment that a time means; false for a unit without a date. */
+static bool find_moment(const snow_volume_info *info, moment *out) {
+    const calendar c = calendar_of(info->calendar);
+    double seconds, unit;
+    if (!read_unit(info, out, &seconds, &unit))
+        return false;
+    seconds += info->time_value * unit;
     double days = floor((seconds + 0.5) / 86400);
     int rest = (int)floor(seconds + 0.5 - days * 86400);
     if (!(fabs(days) < 1e9))
@@ -244,6 +258,30 @@ static bool format_number(double value, const char *format, char *out,
 #pragma GCC diagnostic pop
     return used < capacity &&
            add_plain(at + length, strlen(at + length), out, capacity, &used);
+}
+
+bool snow_time_value(const snow_volume_info *given, const char *date,
+                     double *out) {
+    snow_volume_info info;
+    moment begin, m, day;
+    double seconds, wanted, unit;
+    if (SNOW_RECORD_READ(NULL, snow_volume_info, given, &info) !=
+            SNOW_STATUS_OK ||
+        !read_unit(&info, &begin, &seconds, &unit) ||
+        !read_date(date, &m, &wanted))
+        return false;
+    const calendar c = calendar_of(info.calendar);
+    const int64_t number = number_of(c, &m);
+    date_of(c, number, &day);
+    if (m.hour < 0 || m.hour > 24 || m.minute < 0 || m.minute > 59 ||
+        date[strspn(date, "0123456789-+:._ TZ")])
+        return false;
+    if (day.year != m.year || day.month != m.month || day.day != m.day)
+        return false; /* such as February 30 */
+    *out =
+        ((double)(number - number_of(c, &begin)) * 86400 + wanted - seconds) /
+        unit;
+    return true;
 }
 
 bool snow_time_text(const snow_volume_info *given, const char *format,

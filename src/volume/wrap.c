@@ -52,7 +52,9 @@ snow_status snow_volume_wrap(snow_context *context,
     memcpy(own.unit, info.unit, sizeof own.unit);
     own.unit[sizeof own.unit - 1] = 0;
     memcpy(own.modality, info.modality, sizeof own.modality - 1);
+    memcpy(own.quantity, info.quantity, sizeof own.quantity - 1);
     memcpy(own.value_unit, info.value_unit, sizeof own.value_unit - 1);
+    memcpy(own.description, info.description, sizeof own.description - 1);
     memcpy(own.window, info.window, sizeof own.window);
     snow_status status = snow_volume_info_check(context, &own);
     if (status != SNOW_STATUS_OK)

@@ -65,7 +65,26 @@ static void dates_are_those_of_their_calendar(void **state) {
         assert_true(
             snow_time_text(&info, "%Y-%m-%d %H:%M:%S", text, sizeof text));
         assert_string_equal(text, rows[n].date);
+        /* And back, but for parts of a second. */
+        double value = 0, unit = strstr(rows[n].unit, "day")      ? 86400
+                                 : strstr(rows[n].unit, "hour")   ? 3600
+                                 : strstr(rows[n].unit, "minute") ? 60
+                                                                  : 1;
+        assert_true(snow_time_value(&info, rows[n].date, &value));
+        assert_true(fabs(value - rows[n].value) * unit <= 0.5);
     }
+    double value = 7;
+    snow_volume_info info = at_time("hours since 2000-01-01", "noleap", 0);
+    assert_true(snow_time_value(&info, "2000-03-01", &value));
+    assert_true(value == 59 * 24);
+    assert_true(snow_time_value(&info, "2000-03-01_06:30", &value));
+    assert_true(value == 59 * 24 + 6.5);
+    assert_false(snow_time_value(&info, "2000-02-29", &value));
+    assert_false(snow_time_value(&info, "2000-13-01", &value));
+    assert_false(snow_time_value(&info, "tomorrow", &value));
+    info = at_time("h", "", 0);
+    assert_false(snow_time_value(&info, "2000-03-01", &value));
+    assert_true(value == 59 * 24 + 6.5);
 }
 
 static void times_are_written_as_asked(void **state) {

@@ -153,6 +153,32 @@ class Arrays(unittest.TestCase):
         with self.assertWarnsRegex(UserWarning, r"isel\(time=0\)"):
             sg.Volume(xarray.DataArray(block(), dims=("time", "y", "x")))
 
+    def test_maps_of_xarray_are_one_slice_and_values_keep_their_names(self):
+        try:
+            import xarray
+        except ImportError:
+            self.skipTest("no xarray")
+        times = xarray.DataArray(
+            block(numpy.float32), name="tos", dims=("time", "lat", "lon"), attrs={
+                "units": "K", "long_name": "sea surface temperature"}, coords={
+                "lat": ("lat", numpy.arange(block().shape[1]) * 2.0 - 5, {
+                    "units": "degrees_north"}),
+                "lon": ("lon", numpy.arange(block().shape[2]) * 2.0, {
+                    "units": "degrees_east"})})
+        for part in times.isel(time=1), times.isel(time=[1]):
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                volume = sg.Volume(part)
+            numpy.testing.assert_array_equal(numpy.asarray(volume), block()[1:2])
+            numpy.testing.assert_allclose(volume.affine[:2, 3], (0, -5))
+            self.assertEqual(volume.info["quantity"], "tos")
+            self.assertEqual(volume.info["value_unit"], "K")
+            self.assertEqual(volume.info["description"], "sea surface temperature")
+            self.assertEqual(volume._caption(), "tos (K)")
+        long = sg.Volume(times.isel(time=1).rename("\u00e4" * 99))
+        self.assertEqual(set(long.info["quantity"]), {"\u00e4"})
+        self.assertEqual(sg.Volume(block()).info["quantity"], "")
+
     @unittest.skipUnless(shutil.which("localedef") and
                          os.path.exists("/usr/share/i18n/locales/de_DE"),
                          "no locales")

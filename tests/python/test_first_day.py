@@ -550,10 +550,10 @@ class Stumbles(InFolder):
             self.assertEqual([each.filename for each in caught], [__file__])
 
     @needs("h5py")
-    def test_the_unit_of_a_data_set_stands_over_the_legend(self):
+    def test_name_and_unit_of_a_data_set_stand_over_the_legend(self):
         import h5py
         with h5py.File("a.h5", "w") as file:
             for unit in ("K", numpy.bytes_("K")):
                 data = file.create_dataset(repr(unit), data=ball())
                 data.attrs["units"] = unit
-                self.assertEqual(sg.Volume(data)._caption(), "K")
+                self.assertEqual(sg.Volume(data)._caption(), f"{unit!r} (K)")

@@ -6,6 +6,7 @@ import pickle
 import subprocess
 import sys
 import unittest
+import warnings
 
 import numpy
 
@@ -265,6 +266,24 @@ class Faults(InFolder):
     def test_memory_is_that_of_files(self):
         with self.assertRaisesRegex(TypeError, "memory counts for files only: .*memory="):
             sg.Volume(RAMP, memory=1 << 20)
+
+    def test_what_the_command_line_writes_on_pictures_is_drawn_or_warned_of(self):
+        volume = head()
+        for name, value in (("box", "axes"), ("annotate", "time")):
+            with self.assertWarnsRegex(sg.SnowglassWarning, f"^{name} is not drawn"):
+                sg.render(volume, size=24, **{name: value})
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                sg.render(volume, size=24, **{name: None})
+        for given in {}, {"axis": "axial"}:
+            sg.render(volume, size=96, title="WRF", **given).save("here.png")
+            sg.render(volume, size=96, **given).save("saved.png", title="WRF")
+            sg.render(volume, size=96, **given).save("without.png")
+            with open("here.png", "rb") as here, open("saved.png", "rb") as saved, \
+                    open("without.png", "rb") as without:
+                drawn = here.read()
+                self.assertEqual(drawn, saved.read())
+                self.assertNotEqual(drawn, without.read())
 
     def test_what_help_says_first(self):
         self.assertIn("wraps an array", sg.Volume.__init__.__doc__)

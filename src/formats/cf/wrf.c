@@ -223,10 +223,12 @@ static void place_levels(const cf_file *file, const heights *h, double *rows,
     *z = levels;
     if (snow_uneven_fits(rows + count, count))
         z->moved = rows + count;
-    snow_notify(file->context,
-                "levels lie at their mean heights, from which columns depart "
-                "by up to %.0f m; --vertical height shows each column's own",
-                away);
+    if (away >= 0.5)
+        snow_notify(
+            file->context,
+            "levels lie at their mean heights, from which columns depart "
+            "by up to %.0f m; --vertical height shows each column's own",
+            away);
 }
 
 static snow_status take_heights(const cf_file *file,

@@ -71,6 +71,17 @@ for steps in "1", "0:3":
     found = look_of("movie", "cloud.nc", "--time", steps, "-o", "m%d.png")
     check(f"a movie of steps {steps} has the look of one", found == one, found)
 
+# Dates are those of cftime, and other units of length are understood.
+for date, step in ("2000-01-01", 0), ("2000-01-01 05:00", 1), ("2000-01-02T00:00:00", 2):
+    _, told = run("info", "cloud.nc", "--time", date)
+    when = netCDF4.num2date(6 * step, "hours since 2000-01-01")
+    check(f"{date} is step {step}", f"step {step})" in told and f": {when}" in told, told)
+_, told = run("info", "cloud.nc", "--time", "2000-02-30")
+check("a day that is none", "is no date of the input" in told, told)
+for at in "150km", "150000m":
+    _, told = run("slice", "cloud.nc", "--axis", "z", "--at", at, "-o", "s.png", "-y")
+    check(f"--at {at}", "50 of" in told, told)
+
 # One slice: all that the file has is drawn, and nothing that is missing.
 LAT, LON = axis("lat", 1, 60, "degrees_north"), axis("lon", 1, 80, "degrees_east")
 y, x = np.mgrid[:60, :80]

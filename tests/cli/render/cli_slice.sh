@@ -17,12 +17,15 @@ for cut in 12:13,:,:=sagittal :,7:8,:=coronal :,:,3:4=axial 1:2,2:3,:=axial; do
     run 0 "of the box ${cut%=*}" "$TOOL" slice $head --crop "${cut%=*}" -o face.png -y
     says "${cut#*=} slice "
 done
+run 0 "a position in micrometres" "$TOOL" slice $head -o um.png -q --at 3600um
+run 0 "in millimetres" "$TOOL" slice $head -o mm.png -q --at 3.6mm
+check "is the same" cmp -s um.png mm.png
 run 0 "names of axes may be capital" "$TOOL" slice $head -o c.png -q --axis AXIAL
 check "of the same bytes" cmp -s a.png c.png
 told "a name after the input" '; to head.png$' "$TOOL" slice $head
 check "is written" is_png head.png
 
-for at in -1 36 1e9 2.5 nan middle 3um 5mm5; do
+for at in -1 36 1e9 2.5 nan middle 3s 5mm5; do
     refused 2 "slice '$at'" \
         "--at: '$at' is no slice across coronal: must be 0 to 35, or a position from" \
         "$TOOL" slice $head -o x.png --axis coronal --at "$at"
