@@ -13,6 +13,10 @@
 /* Two axes whose cosines differ by less than this are equally good. */
 #define AXIS_TIE 1e-6
 
+/* Voxels by which the next slice is shifted at most, where another axis has a
+ * smaller shear. */
+#define SHEAR_MOST 8
+
 /* Column `axis` of the matrix: the world step from one voxel to the next. */
 static void step_of(const snow_volume_info *info, int axis, double step[3]) {
     for (int i = 0; i < 3; i++)
@@ -43,22 +47,28 @@ void snow_slice_normal(const snow_volume_info *info, int axis,
     snow_normalize(normal);
 }
 
-/* The axis whose slices face the viewer most. */
+/* The axis whose slices face the viewer most.  Flat voxels, seen from their
+ * side, would shift by many voxels from such a slice to the next: then it is
+ * the axis whose slices a ray crosses most often. */
 static int choose_axis(const snow_volume_info *info, const double back[3]) {
-    double best = -1;
-    int chosen = 2;
+    double best = -1, crossed[3];
+    int chosen = 2, densest = 2;
     for (int axis = 2; axis >= 0; axis--) {
         /* The absolute cosine between the line of sight and the normal of the
          * slices along an axis. */
-        double normal[3];
+        double normal[3], step[3];
         snow_slice_normal(info, axis, normal);
+        step_of(info, axis, step);
         double cosine = fabs(snow_dot(normal, back));
+        crossed[axis] = cosine / fabs(snow_dot(normal, step));
         if (cosine > best + AXIS_TIE) {
             best = cosine;
             chosen = axis;
         }
+        if (crossed[axis] > crossed[densest])
+            densest = axis;
     }
-    return chosen;
+    return crossed[densest] > SHEAR_MOST * crossed[chosen] ? densest : chosen;
 }
 
 static void place_slices(const snow_volume_info *info,

@@ -200,15 +200,19 @@ static double slice_cosine(const reference_scene *scene,
 
 int reference_slice_axis(const reference_scene *scene,
                          const reference_camera *camera) {
-    double cosine[3], best = 0;
+    double cosine[3], crossed[3], best = 0, inverse[3][3];
+    int facing = 2, densest = 2;
+    reference_inverse(scene->info.matrix, inverse);
     for (int n = 0; n < 3; n++) {
         cosine[n] = slice_cosine(scene, camera, n);
         best = fmax(best, cosine[n]);
+        crossed[n] = fabs(reference_dot(inverse[n], camera->back));
     }
-    for (int n = 2; n > 0; n--)
-        if (cosine[n] >= best - 1e-6)
-            return n;
-    return 0;
+    while (facing > 0 && cosine[facing] < best - 1e-6)
+        facing--;
+    for (int n = 0; n < 2; n++)
+        densest = crossed[n] > crossed[densest] ? n : densest;
+    return crossed[densest] > 8 * crossed[facing] ? densest : facing;
 }
 
 double reference_slice_step(const reference_scene *scene,

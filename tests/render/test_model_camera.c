@@ -333,6 +333,26 @@ static void slices_are_taken_along_the_most_parallel_normal(void **state) {
     }
 }
 
+/* A storm on a grid of 12 km, with levels 0.4 km apart, seen from above its
+ * side: along y a slice would shift by 14 voxels, along z it does by a quarter.
+ */
+static void flat_voxels_are_crossed_from_their_face(void **state) {
+    model_stage *stage = *state;
+    static const struct {
+        double height, elevation;
+        int axis;
+    } rows[] = {{12, 25, 1},  {1.2, 25, 1}, {0.4, 25, 2},
+                {0.4, 10, 1}, {0.4, 80, 2}, {30, 60, 2}};
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        reference_scene scene = model_blank((int64_t[]){5, 4, 3}, 0.5);
+        scene.info.matrix[0][0] = scene.info.matrix[1][1] = 12;
+        scene.info.matrix[2][2] = rows[n].height;
+        scene.view.elevation = rows[n].elevation - 90;
+        check_axis(stage, &scene, rows[n].axis);
+        model_free(&scene);
+    }
+}
+
 static void of_equally_parallel_axes_the_last_is_taken(void **state) {
     model_stage *stage = *state;
     reference_scene scene = model_blank((int64_t[]){5, 4, 3}, 0.5);
@@ -468,6 +488,7 @@ int main(void) {
         MODEL_TEST(the_matrix_carries_voxels_to_the_world),
         MODEL_TEST(one_voxel_per_pixel_is_the_zoom_for_voxels),
         MODEL_TEST(slices_are_taken_along_the_most_parallel_normal),
+        MODEL_TEST(flat_voxels_are_crossed_from_their_face),
         MODEL_TEST(of_equally_parallel_axes_the_last_is_taken),
         MODEL_TEST(any_zoom_is_safe_and_quick),
         MODEL_TEST(settings_of_an_older_version_are_read_as_far_as_they_reach),
