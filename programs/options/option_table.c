@@ -165,7 +165,7 @@ const option_row option_table[] = {
      SNOW_FOV_MIN, SNOW_FOV_MAX, "perspective projection with a field of view over the shorter side, in "
      "degrees up to 120; 30 if FOV is left out (default: parallel projection)"},
     {"position", 0, "X,Y,Z", TOPIC_CAMERA, RENDER, read_place, FIELD(position),
-     0, 0, "camera position in world coordinates (mm), in place of --view; a "
+     0, 0, "camera position in world coordinates, in place of --view; a "
      "parallel projection uses only the direction (default: from --view)"},
     {"target", 0, "X,Y,Z", TOPIC_CAMERA, RENDER, read_place, FIELD(target), 0,
      0, "point that the camera looks at and turns around (default: the centre of "
