@@ -16,6 +16,7 @@
 #include <snowglass/recipe.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #define ROWS_MAX OPTION_ROWS_MOST
 
@@ -185,11 +186,14 @@ static int refuse_foreign(const option_row *row, const verb_row *verb) {
 }
 
 /* Whether an option's letters have a meaning in one case only; other readers
- * compare without regard to case, or take names of files. */
-static bool has_small_letters(const option_row *row) {
+ * compare without regard to case, or take names of files and of what is in
+ * them. */
+static bool has_small_letters(const option_row *row, const char *text) {
     static option_read *const readers[] = {
-        read_choice, read_component, read_size,   read_dims,   read_spacing,
-        read_range,  read_scale,     read_kernel, read_combine};
+        read_choice, read_size,  read_dims,   read_spacing,
+        read_range,  read_scale, read_kernel, read_combine};
+    if (row->read == read_component)
+        return strlen(text) == 1 || strcasecmp(text, "magnitude") == 0;
     for (size_t i = 0; i < sizeof readers / sizeof *readers; i++)
         if (row->read == readers[i])
             return true;
@@ -202,7 +206,7 @@ static bool has_small_letters(const option_row *row) {
 static const char *keep_small(options *out, const option_row *row,
                               const char *text) {
     size_t length = text ? strlen(text) + 1 : 0;
-    if (!text || !has_small_letters(row) ||
+    if (!text || !has_small_letters(row, text) ||
         length > CONFIG_TEXTS_BYTES - out->text_bytes)
         return text;
     char *kept = out->texts + out->text_bytes;

@@ -169,7 +169,8 @@ int channels_choose(const options *opts, const snow_volume_info *info,
     if (!asked->count && list.count)
         directed ? note_directions(opts) : note_others(opts, info);
     const bool light =
-        strcmp(opts->mode, "mip") == 0 && channels_are_light(&list, info);
+        (strcmp(opts->mode, "mip") == 0 || strcmp(opts->mode, "slice") == 0) &&
+        channels_are_light(&list, info);
     for (int n = 0; n < list.count; n++)
         list.picks[n].light = light;
     channels_fill(&list, info, opts->colormap);

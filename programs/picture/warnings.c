@@ -77,9 +77,26 @@ static void warn_empty(const render_state *s, snow_image *image) {
             "--target, --position, --zoom and --clip");
 }
 
+/* Values reach a level from below: of a field whose ground is 0 and that is
+ * below it elsewhere, such as the charge of electrons, all around is inside. */
+static void warn_iso(const render_state *s) {
+    const double iso = s->settings.iso;
+    snow_volume_statistics of;
+    snow_volume_statistics_init(&of);
+    if (s->settings.mode != SNOW_MODE_ISO || !(iso < 0) || !s->volume ||
+        snow_volume_get_statistics(s->volume, &of) != SNOW_STATUS_OK ||
+        of.max > 0 || of.min >= iso)
+        return;
+    say("note: no value is above 0, so that nearly all reaches %g: mode iso "
+        "shows the box; --opacity %g:1,%g:1,%g:0 --shade phong shows what is "
+        "below %g",
+        iso, of.min, iso, 0.97 * iso, iso);
+}
+
 void warn_picture(const render_state *s, snow_image *image) {
     if (!is_shown(s->opts))
         return;
+    warn_iso(s);
     warn_method(s);
     warn_empty(s, image);
 }

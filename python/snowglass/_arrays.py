@@ -267,10 +267,10 @@ def _place_of(source: Any, names: Mapping[str, str]) -> tuple[Any, str]:
     found = {axis: _coordinate(source, names[axis]) for axis in "xyz"}
     x = found["x"]
     affine = numpy.eye(4)
-    same = {axis: at.given and _ratio(at.unit, x.unit) for axis, at in found.items()}
+    same = {axis: at.given and unit_ratio(at.unit, x.unit) for axis, at in found.items()}
     for n, axis in enumerate("xyz"):
         step, first, unit, given = found[axis]
-        metres = _ratio(unit, "m")
+        metres = unit_ratio(unit, "m")
         ratio = same[axis] or (metres / DEGREE if metres and x.unit == "degrees"
                                else abs(x.step / step))
         if given and not same[axis]:
@@ -299,7 +299,7 @@ class _Coordinate(NamedTuple):
     given: bool = False
 
 
-def _ratio(unit: str, other: str) -> float:
+def unit_ratio(unit: str, other: str) -> float:
     """How many of the other unit one is; 0 if they cannot be compared."""
     if unit == other:
         return 1.0

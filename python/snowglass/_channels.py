@@ -389,7 +389,7 @@ class Channels:
         if given is not None:
             return given
         color = self._usual_color(n, said)
-        pale = color == "blue" and mode == "mip" and self.light
+        pale = color == "blue" and mode in ("mip", "slice") and self.light
         return PALE_BLUE if pale else color
 
     def _usual_color(self, n: int, said: Mapping[str, Any]) -> str:
@@ -405,7 +405,7 @@ class Channels:
         flat, said, pick = mode != "over", self._said(n), self.picks[n]
         kind, low, high = _parse_range(
             pick.range or (look.range if is_ranged(look) else said["window"]) or
-            ("signal" if mode == "mip" and self.light else
+            ("signal" if mode in ("mip", "slice") and self.light else
              ("slices" if mode == "slice" else "robust") if flat else None))
         fields: dict[str, Any] = {"low": low, "high": high,
                                   **_parse_scale(look.scale)}

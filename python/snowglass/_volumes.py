@@ -932,14 +932,16 @@ class Volume(_snowglass.Volume):
                              for n in range(3) if n != along)
         index: float = dims[along] // 2
         if isinstance(at, str):
-            number = at.strip()
-            placed = number.endswith(unit)
+            number = at.strip().rstrip("abcdefghijklmnopqrstuvwxyz\N{MICRO SIGN}")
+            own = at.strip()[len(number):]
+            ratio = _arrays.unit_ratio(own, unit) if own else 0
             try:
-                index = float(number[:-len(unit)] if placed else number)
+                index = float(number) if ratio or not own else float("nan")
             except ValueError:
                 index = float("nan")
-            if placed and index == index:
-                index = round((index - first) / row[along]) if row[along] else -1
+            if ratio and index == index:
+                index = round((ratio * index - first) / row[along]) \
+                    if row[along] else -1
         elif at is not None:
             index = _whole("at", at, f"a slice's number, 0 to {dims[along] - 1}, or a "
                                      f"position with its unit, such as '12.5{unit}'")
@@ -1033,8 +1035,11 @@ def _check_render(settings: Mapping[str, Any], view: Any, legend: Any) -> None:
     settable = {"material", *_snowglass.names("settings")} - {*MATERIAL, "footprint"}
     if not settings.keys() <= settable:
         _checks.names(settings, ("look", *Picture.__annotations__), {
-            name: "is an option of Volume: give it when the volume is opened"
-            for name in (*_recipes.DATA, *_arrays.OPTIONS, "memory")})
+            **{name: "is an option of Volume: give it when the volume is opened"
+               for name in (*_recipes.DATA, *_arrays.OPTIONS, "memory")},
+            **{name: "is not drawn by Python: 'snowglass render' draws it"
+               for name in ("annotate", "box")},
+            **{name: "is an option of Image.save" for name in ("title", "background")}})
     _checks.text("view", view, VIEW)
     _check_legend(legend)
 

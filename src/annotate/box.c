@@ -23,18 +23,24 @@
 /* Pixels of the pieces of an edge that may be hidden. */
 #define PIECE 2.0
 
-/* Heights of numbers that the ticks of an axis are apart, at least. */
+/* Heights of numbers that the ticks of an axis are apart, at least; of one that
+ * is nearly upright, whose numbers stand above one another. */
 #define APART 4.0
+#define APART_UPRIGHT 2.0
+
+#define TEXTS_MOST 64
 
 /* The box before the camera. */
 typedef struct box_view {
     snow_overlay *overlay;
     const snow_volume_info *info;
     snow_camera camera;
-    double sides[3][3]; /* from end to end, along right, up and back */
-    bool seen[3][2];    /* the lower and the upper face of each axis */
-    double height;      /* of numbers */
-    size_t others;      /* shapes that were there before */
+    double sides[3][3];          /* from end to end, along right, up and back */
+    bool seen[3][2];             /* the lower and the upper face of each axis */
+    double height;               /* of numbers */
+    size_t others;               /* shapes that were there before */
+    double texts[TEXTS_MOST][4]; /* names and numbers: their places */
+    int text_count;
 } box_view;
 
 /* A point of the box, -0.5 to 0.5 along each axis, relative to the target. */
@@ -164,10 +170,9 @@ static void name_axis(const box_view *b, int axis, box_axis *out) {
     for (int end = 0; end < 2; end++)
         out->from[end] =
             first + step * (end ? (double)info->dims[axis] - 0.5 : -0.5);
-    /* Numbers of up to four digits stay. */
-    const double most = fmax(fabs(out->from[0]), fabs(out->from[1]));
     const double factor =
-        most >= 10000 ? snow_length_factor(most, 1000, &unit) : 1;
+        snow_length_factor(fmax(fabs(out->from[0]), fabs(out->from[1])),
+                           SNOW_LENGTH_LEAST, SNOW_LENGTH_BELOW, &unit);
     for (int end = 0; end < 2; end++)
         out->from[end] *= factor;
     snprintf(out->name, sizeof out->name, "%c%s%s%s",
@@ -188,7 +193,7 @@ static bool find_axis(const box_view *b, int axis, box_axis *out) {
         double along[2] = {edge.pixels[1][0] - edge.pixels[0][0],
                            edge.pixels[1][1] - edge.pixels[0][1]};
         double length = hypot(along[0], along[1]);
-        if (length < 2 * APART * b->height)
+        if (length < APART * b->height)
             continue;
         double normal[2] = {-along[1] / length, along[0] / length};
         double off = (edge.pixels[0][0] - middle[0]) * normal[0] +
@@ -211,10 +216,26 @@ static double move_inside(double low, double high, double size) {
     return by < 0 ? floor(by) : ceil(by);
 }
 
+/* Whether a text would touch an earlier one; else it takes the place. */
+static bool is_taken(box_view *b, const double given[4]) {
+    const double gap = 0.25 * b->height;
+    const double box[4] = {given[0] - gap, given[1] - gap, given[2] + gap,
+                           given[3] + gap};
+    for (int n = 0; n < b->text_count; n++) {
+        const double *other = b->texts[n];
+        if (box[0] < other[2] && other[0] < box[2] && box[1] < other[3] &&
+            other[1] < box[3])
+            return true;
+    }
+    if (b->text_count < TEXTS_MOST)
+        memcpy(b->texts[b->text_count++], given, sizeof b->texts[0]);
+    return false;
+}
+
 /* Writes a text about a point, `x` and `y` pixels from it; in the picture, if
  * the point is. */
-static snow_status write_beside(const box_view *b, const double point[2],
-                                double x, double y, const double share[2],
+static snow_status write_beside(box_view *b, const double point[2], double x,
+                                double y, const double share[2],
                                 const char *text) {
     snow_overlay *overlay = b->overlay;
     x += point[0];
@@ -231,13 +252,14 @@ static snow_status write_beside(const box_view *b, const double point[2],
         SNOW_TRY(snow_overlay_text(overlay, x + by[0], y + by[1], share[0],
                                    share[1], b->height, text));
     }
-    /* It does not lie upon others than the box. */
-    if (snow_overlay_meets(overlay, overlay->shape_count - 1, b->others))
+    /* It does not lie upon others than the box, nor on one of another axis. */
+    if (snow_overlay_meets(overlay, overlay->shape_count - 1, b->others) ||
+        is_taken(b, overlay->shapes[overlay->shape_count - 1].box))
         overlay->shape_count--;
     return SNOW_STATUS_OK;
 }
 
-static snow_status draw_number(const box_view *b, const double at[2],
+static snow_status draw_number(box_view *b, const double at[2],
                                const double out[2], double away,
                                const char *text) {
     const double share[2] = {0.5 - 0.5 * out[0], 0.5 - 0.5 * out[1]};
@@ -256,7 +278,7 @@ static void place_on(const box_view *b, const box_axis *axis, double share,
 
 /* Beyond the numbers, or, beside which there may be no room, above their end.
  */
-static snow_status draw_name(const box_view *b, const box_axis *axis) {
+static snow_status draw_name(box_view *b, const box_axis *axis) {
     double at[2];
     place_on(b, axis, 0.5, at);
     if (fabs(axis->out[0]) < 0.8)
@@ -267,11 +289,12 @@ static snow_status draw_name(const box_view *b, const box_axis *axis) {
                         -1.2 * b->height, share, axis->name);
 }
 
-static snow_status draw_axis(const box_view *b, const box_axis *axis) {
+static snow_status draw_axis(box_view *b, const box_axis *axis) {
     double from = axis->from[0], length = axis->from[1] - from;
     double pixels = hypot(axis->pixels[1][0] - axis->pixels[0][0],
                           axis->pixels[1][1] - axis->pixels[0][1]);
-    double step = fabs(length) * APART * b->height / pixels, at[2];
+    const double apart = fabs(axis->out[0]) < 0.8 ? APART : APART_UPRIGHT;
+    double step = fabs(length) * apart * b->height / pixels, at[2];
     step = snow_round_below(2.4999 * step);
     double low = fmin(from, from + length), high = fmax(from, from + length);
     SNOW_TRY(snow_begin_strokes(b->overlay, b->height));
@@ -287,7 +310,7 @@ static snow_status draw_axis(const box_view *b, const box_axis *axis) {
         place_on(b, axis, (n * step - from) / length, at);
         SNOW_TRY(draw_number(b, at, axis->out, 0.9, text));
     }
-    return draw_name(b, axis);
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_overlay_box(snow_overlay *overlay,
@@ -315,12 +338,15 @@ snow_status snow_overlay_box(snow_overlay *overlay,
     b.height = snow_number_height(overlay);
     find_faces(&b);
     SNOW_TRY(draw_edges(&b));
-    for (int axis = 0; axis < 3 && axes; axis++) {
-        box_axis edge;
-        if (volume.dims[axis] == 1 || !find_axis(&b, axis, &edge))
-            continue;
-        name_axis(&b, axis, &edge);
-        SNOW_TRY(draw_axis(&b, &edge));
-    }
+    box_axis edges[3];
+    int count = 0;
+    for (int axis = 0; axis < 3 && axes; axis++)
+        if (volume.dims[axis] > 1 && find_axis(&b, axis, &edges[count]))
+            name_axis(&b, axis, &edges[count++]);
+    /* Names first, which no number is to take the place of. */
+    for (int n = 0; n < count; n++)
+        SNOW_TRY(draw_name(&b, &edges[n]));
+    for (int n = 0; n < count; n++)
+        SNOW_TRY(draw_axis(&b, &edges[n]));
     return SNOW_STATUS_OK;
 }

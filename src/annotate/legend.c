@@ -130,7 +130,7 @@ snow_status snow_overlay_scale_bar(snow_overlay *overlay,
     if (from_above || !write_height(&volume, text, sizeof text)) {
         const char *unit = volume.unit;
         const double world = length * camera.pitch;
-        const double factor = snow_length_factor(world, 1000, &unit);
+        const double factor = snow_length_factor(world, 1, 1000, &unit);
         snow_text_print(text, sizeof text, "%.4g%s%s", world * factor,
                         *unit ? " " : "", unit);
         SNOW_TRY(snow_begin_strokes(overlay, height));

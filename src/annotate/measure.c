@@ -119,10 +119,8 @@ static void write_lines(measure_view *m, const char *value_unit) {
     const char *space = *measure->unit ? " " : "", *unit = measure->unit;
     char text[LINE_BYTES];
     if (measure->kind == SNOW_MEASURE_LINE) {
-        const double factor =
-            measure->result < 10000
-                ? 1
-                : snow_length_factor(measure->result, 1000, &unit);
+        const double factor = snow_length_factor(
+            measure->result, SNOW_LENGTH_LEAST, SNOW_LENGTH_BELOW, &unit);
         snow_text_print(text, sizeof text, "%.4g%s%s", measure->result * factor,
                         space, unit);
     } else if (measure->kind == SNOW_MEASURE_ANGLE)

@@ -107,7 +107,7 @@ static void date_of(calendar c, int64_t number, moment *m) {
             *m = next;
 }
 
-/* Seconds of a unit that dates are counted in; 0 for others. */
+/* Seconds of a unit of time; 0 for others. */
 static double seconds_in(const char *unit, size_t length) {
     static const struct {
         const char *letters;
@@ -116,7 +116,8 @@ static double seconds_in(const char *unit, size_t length) {
                  {"minute", 60}, {"min", 60},      {"hour", 3600},
                  {"hr", 3600},   {"h", 3600},      {"day", 86400},
                  {"d", 86400},   {"week", 604800}, {"millisecond", 1e-3},
-                 {"msec", 1e-3}, {"ms", 1e-3}};
+                 {"msec", 1e-3}, {"ms", 1e-3},     {"us", 1e-6},
+                 {"ns", 1e-9},   {"ps", 1e-12},    {"fs", 1e-15}};
     for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
         size_t own = strlen(units[i].letters);
         bool plural = length == own + 1 && unit[own] == 's';
@@ -240,8 +241,20 @@ static bool add_plain(const char *text, size_t length, char *out,
     return true;
 }
 
-static bool format_number(double value, const char *format, char *out,
-                          size_t capacity) {
+/* The time in the unit that stands behind the number in a format, as in
+ * "%.0f fs", where that and the volume's are known ones. */
+static double in_unit_of(const snow_volume_info *info, const char *behind) {
+    behind += strspn(behind, " ");
+    const double wanted =
+        seconds_in(behind, strspn(behind, "abcdefghijklmnopqrstuvwxyz"));
+    const double own =
+        seconds_in(info->time_unit, strcspn(info->time_unit, " "));
+    return wanted > 0 && own > 0 ? info->time_value * (own / wanted)
+                                 : info->time_value;
+}
+
+static bool format_number(const snow_volume_info *info, const char *format,
+                          char *out, size_t capacity) {
     size_t length = 0;
     char conversion[16];
     const char *at = find_number(format, &length);
@@ -254,7 +267,8 @@ static bool format_number(double value, const char *format, char *out,
         return false;
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wformat-nonliteral"
-    used += (size_t)snprintf(out + used, capacity - used, conversion, value);
+    used += (size_t)snprintf(out + used, capacity - used, conversion,
+                             in_unit_of(info, at + length));
 #pragma GCC diagnostic pop
     return used < capacity &&
            add_plain(at + length, strlen(at + length), out, capacity, &used);
@@ -294,7 +308,7 @@ bool snow_time_text(const snow_volume_info *given, const char *format,
         return false;
     bool dated = find_moment(&info, &m);
     if (format)
-        return format_number(info.time_value, format, out, capacity) ||
+        return format_number(&info, format, out, capacity) ||
                (dated && format_moment(&m, format, out, capacity));
     if (dated)
         return format_moment(&m,

@@ -100,6 +100,10 @@ static void times_are_written_as_asked(void **state) {
                 {"hours since 2000-01-01", "%d.%m.%Y", "01.01.2000"},
                 {"seconds since 2000-01-01", NULL, "2000-01-01 00:00:03"},
                 {"hours since 2000-01-01", "%g h", "2.5 h"},
+                {"hours since 2000-01-01", "%g min later", "150 min later"},
+                {"s", "t = %.0f ms", "t = 2500 ms"},
+                {"ps", "%gfs", "2500fs"},
+                {"s", "%g cycles", "2.5 cycles"},
                 {"s", "%Y", NULL},
                 {"s", "%s", NULL},
                 {"s", "%n", NULL},
@@ -217,7 +221,7 @@ static void axes_have_ticks_at_their_coordinates(void **state) {
     view.zoom = 1.6;
     draw_box(overlay, &block, &view, true);
     double pixel = sqrt(20 * 20 + 60 * 60 + 40 * 40) / 400 / 1.6;
-    const snow_shape *x = &overlay->shapes[1];
+    const snow_shape *x = &overlay->shapes[3]; /* behind edges and two names */
     assert_true(x->count >= 2);
     for (size_t n = 0; n < x->count; n++) {
         const float *stroke = overlay->numbers + x->first + 4 * n;

@@ -67,8 +67,9 @@ def expect_pictures(path, windows, colors, name, listed):
                     for c, (w, rgb) in enumerate(zip(windows, colors)))
     for options in ((), ("--channel", spec)) if listed else ((),):
         got = draw("slice", path, "--axis", "z", "--at", "4", *options)
-        expect_light(got, light(CZYX[:, 4], windows, colors), f"{name} slice",
-                     LEVEL)
+        pale = colors if options else [  # nobody asked for a blue that is dark
+            (77 / 255, 77 / 255, 1) if tuple(c) == (0, 0, 1) else c for c in colors]
+        expect_light(got, light(CZYX[:, 4], windows, pale), f"{name} slice", LEVEL)
         got = draw("render", path, "-m", "mip", "--size", "44x36", *options)
         one_by_one = spec if options else spec.replace("#0000ff", "#4d4dff")
         parts = [draw("render", path, "-m", "mip", "--size", "44x36",

@@ -209,7 +209,7 @@ oracle.tool("slice", "a.nii", "-o", "s_%d.npy", "-y", "-q", "--at", "2:5",
 check("slabs of a series", all(near(np.load(f"s_{n}.npy"), plane(
     VOXELS[:, :, n + 1:n + 4].mean(2, keepdims=True), 2, 0), 0.0005)
     for n in range(3)))
-for wrong in ("3in", "0mm", "-3mm", "3mm:sum", "nan", "mm", ""):
+for wrong in ("3s", "0mm", "-3mm", "3mm:sum", "nan", "mm", ""):
     done = run("a.nii", "--slab", wrong)
     check(f"no slab of {wrong!r}", done.returncode == 2 and
           "--slab" in done.stderr)

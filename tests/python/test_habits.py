@@ -275,6 +275,10 @@ class Faults(InFolder):
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
                 sg.render(volume, size=24, **{name: None})
+            with self.assertRaisesRegex(TypeError, f"{name} is not drawn by Python"):
+                volume.render(**{name: value})
+        with self.assertRaisesRegex(TypeError, "title is an option of Image.save"):
+            volume.render(title="WRF")
         for given in {}, {"axis": "axial"}:
             sg.render(volume, size=96, title="WRF", **given).save("here.png")
             sg.render(volume, size=96, **given).save("saved.png", title="WRF")

@@ -118,7 +118,7 @@ class Slices(InFolder):
         self.assertEqual(self.volume.slice("y").stats["index"], 3)
         self.assertEqual(self.volume.slice("z", numpy.int64(4)).stats["index"],
                          4)
-        for bad in (-1, 6, "6", "9mm", "-1mm", "4um", "here", "2.5"):
+        for bad in (-1, 6, "6", "9mm", "-1mm", "4s", "here", "2.5"):
             with self.assertRaisesRegex(ValueError, "across y: give 0 to 5, or "
                                         "a position from '0mm' to '7.5mm'"):
                 self.volume.slice("y", bad)

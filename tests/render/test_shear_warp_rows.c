@@ -72,7 +72,7 @@ static void check(const model_stage *stage, int n, reference_scene *s) {
 static void rows_in_place_give_the_bits_of_copies(void **state) {
     model_stage *stage = *state;
     for (int n = 0; n < 216; n++) {
-        if (!support_takes((size_t)n, 19))
+        if (n >= 18 && !support_takes((size_t)n, 19)) /* all sizes twice */
             continue;
         reference_scene s = rows_scene(n);
         for (snow_isa isa = SNOW_ISA_SCALAR; isa <= SNOW_ISA_AVX512; isa++) {

@@ -33,7 +33,7 @@ def plain():
 
 
 def hostile(page):
-    for slab in ("", "mm", "0mm", "-5mm", "nan", "inf", "5in", "10mm:sum", "10mm:max:max", ":max",
+    for slab in ("", "mm", "0mm", "-5mm", "nan", "inf", "5s", "10mm:sum", "10mm:max:max", ":max",
                  "1" * 300, "10mm" + "m" * 4000, "/etc/passwd", "5mm; rm -rf .", "\u00b5"):
         for what in ("slice", "slice-command"):
             page.question(what, axis="axial", index=5, range=[0, 255], pane=1, n=99, exact=True, slab=slab)

@@ -15,8 +15,9 @@ typedef struct survey {
     int axes;      /* the fewest axes wanted */
     bool anywhere; /* not the last ones: others may have one entry */
     const hdf5_file *file;
-    cf_aside aside; /* data sets that say where others lie */
-    bool of_aside;  /* these are wanted */
+    cf_aside aside;  /* data sets that say where others lie */
+    bool of_aside;   /* these are wanted */
+    const char *end; /* of the paths that are wanted; NULL: all */
     long found;
     char first[HDF5_NAME_BYTES]; /* path of the first match */
     char list[800];              /* all matches, as far as they fit */
@@ -102,6 +103,13 @@ static void spell_sizes(const hdf5_set *set, char *text, size_t capacity) {
                                  (unsigned long long)set->sizes[i]);
 }
 
+/* Whether a path is the end that is wanted, or ends with it behind a slash. */
+static bool has_end(const survey *s, const char *path) {
+    const size_t length = strlen(path), end = s->end ? strlen(s->end) : 0;
+    return !s->end || (length > end && path[length - end - 1] == '/' &&
+                       !strcmp(path + length - end, s->end));
+}
+
 static bool is_wanted(const survey *s, const hdf5_set *set) {
     int wide = 0;
     if (set->axes < s->axes)
@@ -140,7 +148,7 @@ static herr_t look(hid_t file, const char *name, const H5O_info_t *info,
     survey *s = user;
     hdf5_set set;
     if (info->type != H5O_TYPE_DATASET || strlen(name) + 2 > HDF5_NAME_BYTES ||
-        snow_cf_is_aside(&s->aside, name) != s->of_aside)
+        snow_cf_is_aside(&s->aside, name) != s->of_aside || !has_end(s, name))
         return 0;
     hid_t id = H5Dopen2(file, name, H5P_DEFAULT);
     if (id < 0)
@@ -210,6 +218,24 @@ static snow_status find_only(snow_context *context, hid_t file, survey *s) {
     return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                      "holds %ld volumes; choose one with --dataset: %s",
                      s->found, s->list);
+}
+
+snow_status snow_hdf5_complete(snow_context *context, const hdf5_file *file,
+                               const char *asked, char path[HDF5_NAME_BYTES]) {
+    survey s = {.file = file, .axes = 2, .end = asked};
+    snprintf(path, HDF5_NAME_BYTES, "%s", asked);
+    if (strlen(asked) + 2 > HDF5_NAME_BYTES ||
+        H5Oexists_by_name(snow_hdf5_id(file), asked, H5P_DEFAULT) > 0)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_hdf5_visit(context, snow_hdf5_id(file), look, &s));
+    if (s.found > 1)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--dataset %.200s: is the end of %ld paths; choose "
+                         "one: %s",
+                         asked, s.found, s.list);
+    if (s.found)
+        memcpy(path, s.first, sizeof s.first);
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_hdf5_find(snow_context *context, const hdf5_file *from,

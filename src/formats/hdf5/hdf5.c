@@ -331,10 +331,16 @@ static snow_status read_found(snow_context *context, const hdf5_file *file,
 /* The data set of that name, or all that is read with it. */
 static snow_status read_named(snow_context *context, const hdf5_file *file,
                               const hdf5_series *series,
-                              const snow_volume_options *options,
+                              const snow_volume_options *given,
                               snow_volume_info *info, snow_volume **out) {
     hdf5_set set;
     bool found;
+    char path[HDF5_NAME_BYTES];
+    snow_volume_options own = *given, *options = &own;
+    if (own.dataset) {
+        SNOW_TRY(snow_hdf5_complete(context, file, own.dataset, path));
+        own.dataset = path;
+    }
     SNOW_TRY(snow_hdf5_read_theta(context, file, options->dataset, options,
                                   info, out, &found));
     if (found)

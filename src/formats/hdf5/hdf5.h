@@ -106,6 +106,13 @@ snow_status snow_hdf5_refuse_strangers(snow_context *context,
                                        const hdf5_file *file,
                                        const char *asked);
 
+/* The path of the only data set, of two axes at least, that ends with `asked`
+ * behind a slash: "rho" is "/data/400/fields/rho".  `asked` itself where it is
+ * there, and where nothing ends so.  Errors: SNOW_STATUS_BAD_USAGE (several
+ * do), SNOW_STATUS_BAD_INPUT. */
+snow_status snow_hdf5_complete(snow_context *context, const hdf5_file *file,
+                               const char *asked, char path[HDF5_NAME_BYTES]);
+
 /* Opens the requested data set, or the only volume of the file.  The caller
  * closes the set's id.  Errors: SNOW_STATUS_BAD_INPUT, SNOW_STATUS_BAD_USAGE
  * (there are several; a wrong name). */

@@ -82,6 +82,30 @@ for at in "150km", "150000m":
     _, told = run("slice", "cloud.nc", "--axis", "z", "--at", at, "-o", "s.png", "-y")
     check(f"--at {at}", "50 of" in told, told)
 
+# Names of variables keep their letters, and the last part of a path is enough.
+parts = {name: np.float32(np.random.default_rng(n).normal(size=(6, 7, 8)))
+         for n, name in enumerate("UVW")}
+with netCDF4.Dataset("winds.nc", "w") as f:
+    group = f.createGroup("run").createGroup("Fields")
+    for name, size in zip("zyx", (6, 7, 8)):
+        f.createDimension(name, size)
+    for name, values in parts.items():
+        group.createVariable(name, "f4", ("z", "y", "x"))[:] = values
+for names in "/run/Fields/U,/run/Fields/V,/run/Fields/W", "U,V,W", "Fields/U,Fields/V,Fields/W":
+    told = run("info", "winds.nc", "--component", names)[1]
+    found = [float(word) for word in next(
+        (x for x in told.splitlines() if x.startswith("values")), "").replace(",", "").split()
+        if word[0].isdigit()]
+    length = np.sqrt(sum(np.float64(values) ** 2 for values in parts.values()))
+    check(f"--component {names}", len(found) > 1 and np.allclose(
+        found[:2], [length.min(), length.max()], rtol=1e-5), told)
+told = run("info", "winds.nc", "--dataset", "u")[1]
+check("of another case is no name", "there is no such data set" in told, told)
+with netCDF4.Dataset("winds.nc", "a") as f:
+    f["run"].createVariable("U", "f4", ("z", "y", "x"))[:] = 0
+told = run("info", "winds.nc", "--dataset", "U")[1]
+check("two that end so are told", "is the end of 2 paths" in told, told)
+
 # One slice: all that the file has is drawn, and nothing that is missing.
 LAT, LON = axis("lat", 1, 60, "degrees_north"), axis("lon", 1, 80, "degrees_east")
 y, x = np.mgrid[:60, :80]

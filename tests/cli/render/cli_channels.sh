@@ -140,7 +140,7 @@ plain.tif --range 30,180|0 red 30..180, 1 green 30..180, 2 #4d4dff 30..180
 ten.tif --channel 9:red,8:green|9 red [0-9.]+, 8 green [0-9.]+; 
 rgb.nii|0 red 0..255, 1 green 0..255, 2 blue 0..255
 END
-told "a slice" 'channels 0 DAPI blue .*, 1 GFP green ' "$TOOL" slice ome.tif -o slice.png
+told "a slice" 'channels 0 DAPI #4d4dff .*, 1 GFP green ' "$TOOL" slice ome.tif -o slice.png
 run 0 "a turntable" "$TOOL" turntable ome.tif -o t_%d.png -q --frames 2 -s 60x50
 other_file "turns them" t_0.png t_1.png
 

@@ -140,7 +140,7 @@ volumes.npy("vectors.npy", "<f4", (4, 4, 4, 3), struct.pack("<192f", *range(192)
         -s 9x9 --save-config v.json
     check "which is saved" grep -q '"component": "y"' v.json
     run 2 "one that is none" "$TOOL" info vectors.npy --component Radius
-    says 'component radius: not a component'
+    says 'component Radius: not a component'
 else
     skipped "components in capitals" "there is no python3"
 fi
