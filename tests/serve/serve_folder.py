@@ -20,7 +20,7 @@ from volumes import each, nifti, npy, nrrd, placed
 
 try:
     import pydicom
-    from pydicom.dataset import FileDataset, FileMetaDataset
+    from pydicom.dataset import Dataset, FileDataset, FileMetaDataset
     from pydicom.uid import CTImageStorage, ExplicitVRLittleEndian, ImplicitVRLittleEndian, generate_uid
 except ImportError:
     skip("pydicom is missing")
@@ -37,7 +37,8 @@ def voxel(x, y, z):
     return (40 * (x in (3, 8)) + 9 * x + 5 * y + 3 * z) % 250
 
 
-def slices(folder, series, modality, day, number, count, side, syntax=ExplicitVRLittleEndian, text=""):
+def slices(folder, series, modality, day, number, count, side, syntax=ExplicitVRLittleEndian, text="",
+           beside=None):
     """A series of axial slices, whose values are those of a ramp."""
     os.makedirs(os.path.join(ROOT, folder), exist_ok=True)
     for n in range(count):
@@ -52,6 +53,11 @@ def slices(folder, series, modality, day, number, count, side, syntax=ExplicitVR
         data.StudyDate, data.Modality, data.SeriesNumber = day, modality, number
         data.SeriesDescription, data.PatientName = text, "Nobody^Secret"
         data.StudyInstanceUID, data.SeriesInstanceUID, data.InstanceNumber = "1.2.3", series, n + 1
+        if beside:  # another series of the folder, as those of a PET and its CT are
+            related = Dataset()
+            related.StudyInstanceUID, related.SeriesInstanceUID = "1.2.3", beside
+            data.add_new(0x00081250, "SQ", [related])
+            data[0x00081250].is_undefined_length = n % 2 == 0
         data.Rows = data.Columns = side
         data.ImagePositionPatient, data.ImageOrientationPatient = [0, 0, 2 * n], [1, 0, 0, 0, 1, 0]
         data.PixelSpacing, data.SamplesPerPixel, data.PhotometricInterpretation = [1, 1], 1, "MONOCHROME2"
@@ -66,9 +72,10 @@ def in_root(*names):
 
 
 def make():
-    slices("hospital", "1.2.3.4", "CT", "20240305", 2, 4, 16, text="Thorax")
-    slices("hospital", "1.2.3.9", "MR", "20231224", 5, 6, 24, ImplicitVRLittleEndian, text="T1 <b>axial</b>")
-    slices("hospital", "1.2.3.5", "PT", "", 7, 3, 8)
+    slices("hospital", "1.2.3.4", "CT", "20240305", 2, 4, 16, text="Thorax", beside="1.2.3.9")
+    slices("hospital", "1.2.3.9", "MR", "20231224", 5, 6, 24, ImplicitVRLittleEndian, text="T1 <b>axial</b>",
+           beside="1.2.3.5")
+    slices("hospital", "1.2.3.5", "PT", "", 7, 3, 8, beside="1.2.3.4")
     slices("hospital/deep", "1.2.3.7", "CT", "20200229", 1, 5, 12)
     nrrd(in_root("a.nrrd"), DIMS, each(DIMS, voxel), *placed((1, 1, 2), (0, 0, 0)))
     nrrd(SECRET, DIMS, each(DIMS, lambda *_: MARK), *placed((1, 1, 2), (0, 0, 0)))
