@@ -51,8 +51,10 @@ char **child_words(const char *command, const char *output) {
         command = take_word(command, &text);
     }
     for (size_t i = 1; i < count; i++)
-        if (strcmp(words[i - 1], "--output") == 0)
+        if (strcmp(words[i - 1], "--output") == 0) {
             words[i] = (char *)output;
+            break; /* a title of the same word comes later */
+        }
     words[count] = progress;
     words[count + 1] = always;
     words[count + 2] = NULL;

@@ -275,6 +275,10 @@ def is_checked():
     done = until(page, "done", "failed")
     check("quotes of a title stay its own", done["state"] == "done" and fetch(viewer)[2] == run(
         page.ask("movie-command", size=[64, 48], format="webp", frames=5)["text"], "head.webp"), done)
+    page.set(3, title="--output")
+    order(page, frames=1)
+    done = until(page, "done", "failed")
+    check("a title is no option", done["state"] == "done", done)
     guarded(viewer)
     page.close()
     viewer.stop()
