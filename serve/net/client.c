@@ -68,6 +68,21 @@ uint64_t client_shape(const client *c) {
     return (uint64_t)c->size.width | (uint64_t)c->size.height << 32;
 }
 
+/* The state and the look of another volume go behind the message that names it,
+ * which the page forgets those before by. */
+static bool is_behind_info(const client *c, int place) {
+    for (int i = place + 1; i < c->count; i++)
+        if (c->queue[i]->topic == MESSAGE_INFO)
+            return true;
+    return false;
+}
+
+static void take_out(client *c, int place) {
+    memmove(c->queue + place, c->queue + place + 1,
+            (size_t)(c->count - place - 1) * sizeof *c->queue);
+    c->count--;
+}
+
 void client_queue(client *c, outbox *box, outgoing *p) {
     /* The picture at rest, whose head says so, is one for all links. */
     bool final = is_final(p);
@@ -84,6 +99,10 @@ void client_queue(client *c, outbox *box, outgoing *p) {
         if (c->queue[i]->topic != p->topic)
             continue;
         outgoing_release(box, c->queue[i]);
+        if (is_behind_info(c, i)) {
+            take_out(c, i);
+            break;
+        }
         c->queue[i] = outgoing_share(box, p);
         return;
     }
@@ -175,9 +194,7 @@ static void begin(client *c) {
         return;
     c->sending = c->queue[index];
     c->sent = 0;
-    memmove(c->queue + index, c->queue + index + 1,
-            (size_t)(c->count - index - 1) * sizeof *c->queue);
-    c->count--;
+    take_out(c, index);
     c->in_parts = c->thin && is_final(c->sending) &&
                   c->sending->length > 2 * CLIENT_PART_BYTES;
     if (c->in_parts)

@@ -183,6 +183,26 @@ static void texts_with_a_topic_replace_in_place(void **state) {
     outbox_free(box);
 }
 
+/* The page forgets a state and a look that come before the volume's name. */
+static void of_another_volume_its_name_comes_first(void **state) {
+    (void)state;
+    outbox *box = outbox_new(wake_nobody, NULL);
+    client c = {.id = 1};
+    queue(&c, box, MESSAGE_LOOK, 0);
+    queue(&c, box, MESSAGE_STATE, 0);
+    queue(&c, box, MESSAGE_INFO, 1);
+    queue(&c, box, MESSAGE_LOOK, 1);
+    queue(&c, box, MESSAGE_STATE, 1);
+    assert_int_equal(c.count, 3);
+    assert_int_equal(c.queue[0]->topic, MESSAGE_INFO);
+    assert_int_equal(c.queue[1]->topic, MESSAGE_LOOK);
+    assert_int_equal(c.queue[2]->topic, MESSAGE_STATE);
+    for (int i = 0; i < c.count; i++)
+        assert_int_equal(c.queue[i]->bytes[8], 1);
+    client_free(&c, box);
+    outbox_free(box);
+}
+
 static void n_is_the_newest_that_a_revision_has(void **state) {
     (void)state;
     client c = {.id = 1};
@@ -361,6 +381,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(of_pictures_the_newest_waits),
         cmocka_unit_test(texts_with_a_topic_replace_in_place),
+        cmocka_unit_test(of_another_volume_its_name_comes_first),
         cmocka_unit_test(n_is_the_newest_that_a_revision_has),
         cmocka_unit_test(two_pictures_are_under_way),
         cmocka_unit_test(the_picture_at_rest_goes_in_parts_that_can_be_dropped),
