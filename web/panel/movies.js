@@ -124,11 +124,16 @@ export class Movies {
             list.value = this[key];
             return list;
         };
-        /** @type {(name: string, key: 'frames'|'fps', least: number, most: number, usual: number) => HTMLInputElement} */
+        /** An empty field is as usual.
+         * @type {(name: string, key: 'frames'|'fps', least: number, most: number, usual: number) => HTMLInputElement} */
         const count = (name, key, least, most, usual) => {
             const field = number(name, value => {
-                this[key] = value && Math.max(least, Math.min(most, value));
-                field.value = this[key] ? `${this[key]}` : '';
+                this[key] = Math.max(least, Math.min(most, key === 'frames' ? Math.round(value) : value));
+                field.value = `${this[key]}`;
+            });
+            field.addEventListener('change', () => {
+                if (field.value === '')
+                    this[key] = key === 'frames' ? usual : 0;
             });
             field.placeholder = `${usual}`;
             field.value = this[key] ? `${this[key]}` : '';

@@ -91,7 +91,12 @@ async function written({check, copied, file, rest}, page) {
     check('of the steps that are played', command.includes('snowglass movie ') && command.includes('--time 1:4'), command);
     writeFileSync(file('movie.txt'), command);
     await list('Shows').selectOption('turntable');
-    await movie.getByLabel('number of frames').fill('3600');
+    const frames = movie.getByLabel('number of frames');
+    for (const [typed, count] of [['50', 50], ['', 120], ['12.5', 13], ['0', 1], ['3600', 3600]]) {
+        await frames.fill(typed);
+        await frames.blur();
+        check(`"${typed}" frames`, await page.evaluate(() => window.snowglass.movies.order.frames) === count);
+    }
     await movie.getByRole('button', {name: /^Write/}).click();
     await movie.getByRole('button', {name: /^Cancel/}).click();
     await page.waitForFunction(() => /cancelled/.test(document.querySelector('.said').textContent), null, {polling: 20});
