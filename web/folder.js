@@ -37,10 +37,13 @@ function words({kind, name, text, dims = [], times = 1, modality, description, d
 }
 
 export class Folder {
-    /** @param {import('./store.js').Store} store
-     * @param {() => void} openFile */
-    constructor(store, openFile) {
+    /** `found` hears that what a link names is open already.
+     * @param {import('./store.js').Store} store
+     * @param {() => void} openFile
+     * @param {() => void} found */
+    constructor(store, openFile, found) {
         this.store = store;
+        this.found = found;
         /** How far the list is; null: there is none.
          * @type {Listed|null} */
         this.listed = null;
@@ -63,6 +66,8 @@ export class Folder {
         /** What a link names: [name, series].
          * @type {string[]|null} */
         this.wanted = null;
+        /** Whether that is not what was opened. */
+        this.lacks = false;
         this.timer = 0;
         this.head = make('h2', {textContent: 'Open', tabIndex: -1, autofocus: true, id: 'folder'});
         this.line = make('p', {className: 'faint grow', role: 'status'});
@@ -120,6 +125,7 @@ export class Folder {
         this.head.textContent = `Open - ${listed.name}`;
         this.fetch();
         this.later();
+        this.seek();
         if (listed.open === null && !this.element.open && (first || this.store.info))
             this.open();
     }
@@ -140,18 +146,10 @@ export class Folder {
             this.entries.push(...entries);
         this.fetch();
         this.later();
-        const wish = this.wanted ? this.entries.findIndex(({name, series, kind}) => kind === 'volume' &&
-            name === this.wanted?.[0] && series === this.wanted?.[1]) : -1;
-        if (wish >= 0) {
-            this.wanted = null;
-            this.choose(wish);
-        } else if (this.wanted && this.listed?.done && this.entries.length >= this.listed.count) {
-            this.report(`The list has no ${this.wanted[0]}, which the link names: choose another.`);
-            this.wanted = null;
-        }
+        this.seek();
     }
 
-    /** What a link names; where that is open there is nothing to wait for.
+    /** What a link names, which is opened once the list has it.
      * @param {string|null} text */
     want(text) {
         try {
@@ -160,8 +158,27 @@ export class Folder {
         } catch {
             this.wanted = null; // the link names none
         }
-        if (this.wanted && `${this.current}` === `${this.wanted}`)
-            this.wanted = null;
+    }
+
+    /** What is open stays as it is. */
+    seek() {
+        const {wanted, entries, listed} = this;
+        if (!wanted || !listed)
+            return;
+        const wish = entries.findIndex(({name, series, kind}) => kind !== 'fault' && name === wanted[0] && series === wanted[1]);
+        if (wish < 0 && (!listed.done || entries.length < listed.count))
+            return;
+        this.wanted = null;
+        if (wish >= 0 && wish === listed.open) {
+            this.found();
+        } else if (wish >= 0) {
+            this.choose(wish);
+        } else {
+            const text = `The list has no ${wanted[0]}, which the link names: choose another.`;
+            this.lacks = true;
+            this.report(text);
+            this.store.say(text, false, 20000);
+        }
     }
 
     later() {
@@ -319,6 +336,8 @@ export class Folder {
 
     /** @param {number} n */
     choose(n) {
+        this.lacks ||= this.wanted !== null;
+        this.wanted = null;
         if (this.opening !== null) {
             this.then = n;
             return;
@@ -340,10 +359,10 @@ export class Folder {
         this.choose(all[at < 0 ? 0 : (at + by + all.length) % all.length]);
     }
 
-    /** What a link names of the volume that is open.
+    /** What a link names of what is open, a volume or a recipe.
      * @returns {string[]|null} */
     get current() {
         const entry = this.entries[this.listed?.open ?? -1];
-        return entry?.kind === 'volume' ? [entry.name, entry.series] : null;
+        return entry ? [entry.name, entry.series] : null;
     }
 }

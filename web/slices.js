@@ -349,12 +349,23 @@ export class Pane {
         if (frame.n !== this.n)
             return;
         const bitmap = await createImageBitmap(frame.blob, {colorSpaceConversion: 'none'});
+        if (frame.n !== this.n) { // of another volume, meanwhile
+            bitmap.close();
+            return;
+        }
         this.bitmap?.close();
         this.bitmap = bitmap;
         this.file = frame.level === 2 ? frame.blob : null;
         this.busy = false;
         this.draw();
         this.ask();
+    }
+
+    /** No picture is better than that of something else. */
+    blank() {
+        this.bitmap?.close();
+        this.bitmap = this.file = null;
+        surface(this.canvas, {alpha: false});
     }
 
     show() {
@@ -464,6 +475,7 @@ export class Slices {
             const one = this.panes[pane - 1];
             one.busy = false;
             one.exact = true;
+            one.blank();
             if (one.element.isConnected)
                 one.ask();
         });
@@ -588,6 +600,15 @@ export class Slices {
     /** @param {Pane} pane */
     command(pane) {
         this.engine.ask('slice-command', pane.wish);
+    }
+
+    /** What is of another volume. */
+    forget() {
+        this.value = NaN;
+        for (const pane of this.panes) {
+            pane.n = ++this.n; // one that is under way is of no use
+            pane.blank();
+        }
     }
 
     /** After a connection was lost, or for another volume. */

@@ -271,7 +271,11 @@ const lastOf = path => `${path}`.split('/').at(-1);
 async function take({0: file}) {
     if (!file) // a text was dropped
         return;
-    const info = known(store.info);
+    if (!store.info) {
+        engine.tell('said', {text: 'Nothing is open yet: choose a volume, then a recipe.'});
+        return;
+    }
+    const {info} = store;
     /** @type {Record<string, unknown>} */
     const taken = {};
     try {
@@ -358,7 +362,7 @@ const movies = new Movies(store, times, save);
 const panel = new Panel(store, actions, slices, measure, times, movies);
 const overlay = new Overlay(store, pointer, slices);
 const hints = new Hints(store), cube = new Cube(store, picture, actions);
-const folder = new Folder(store, chooseFile);
+const folder = new Folder(store, chooseFile, () => greet(true));
 picture.append(measure.canvas, ...overlay.elements, cube.element, hints.element);
 let renewed = false; // another volume of a folder is open, whose state follows
 let first = true, fresh = true; // the first state of all, and of a connection
@@ -423,6 +427,7 @@ engine.on('info', info => {
     if (info.opened && (!before || info.opened !== before.opened || info.instance !== before.instance)) {
         renewed = true;
         store.renew();
+        slices.forget();
         say('');
     }
     store.info = info;
@@ -445,7 +450,7 @@ function greet(touched) {
         return;
     greeting = false;
     const link = given.get('recipe');
-    if (link)
+    if (link && !folder.lacks) // it is of what the link names
         openLink(link);
     else if (touched === false && !store.info.live)
         hints.show(0); // nobody has used this viewer yet

@@ -71,6 +71,13 @@ export class Editor {
         new ResizeObserver(() => this.draw()).observe(this.canvas);
     }
 
+    /** For another volume: all its values are shown. */
+    renew() {
+        clearTimeout(this.waiting);
+        this.axis.part = this.closer = null;
+        this.chosen = -1;
+    }
+
     get element() {
         const {store} = this;
         const scale = button('Log', 'Logarithmic counts of the histogram', () => {

@@ -77,6 +77,8 @@ export class Panel {
         const {live, dims} = this.info; // a simulation knows its own data
         this.whole = dims;
         this.updates = [];
+        this.editor.renew();
+        this.gradient.renew();
         this.element.replaceChildren(this.channels.element, this.presets.build(), this.look(),
             this.colors.element,
             section('Opacity by gradient', false, this.gradient.element), this.overlay(), this.named(), this.camera(), live ? '' : this.slices.section(each => this.follow(each)), this.measure.section(this.actions.measure), this.clipping(), this.shading(),

@@ -20,6 +20,9 @@ export async function listed(tools) {
         }));
         await shot(page, `folder_${width}`);
     }
+    const line = page.locator('dialog.folder p[role=status]');
+    await page.evaluate(() => window.snowglass.take([new File(['{"azimuth":3}'], 'x.json')]));
+    check('a recipe that is dropped before is told so', /choose a volume/.test(await line.textContent()), await line.textContent());
     await page.keyboard.press('Escape');
     check('and stays until one is chosen', await page.locator('dialog.folder').getAttribute('open') !== null);
     await page.locator('.tiles button').first().focus();
@@ -28,8 +31,14 @@ export async function listed(tools) {
     await shown(page, 'v1.nrrd');
     check('the keyboard opens one', await page.locator('dialog.folder').getAttribute('open') === null);
     await page.evaluate(() => window.snowglass.recipe.set({title: 'mine', azimuth: 40}));
+    await page.keyboard.press('x');
+    await tools.slicesRest(page);
+    const axis = await page.locator('.editor').first().evaluate(({dataset}) => dataset.span);
+    await page.evaluate(() => window.snowglass.editor.nearer(8));
     await page.keyboard.press('n');
     await shown(page, 'v2.nrrd');
+    check('of the one before no slice is left', await page.evaluate(() => window.snowglass.slices.panes.every(pane => !pane.bitmap)));
+    check('nor the part of its values', await page.locator('.editor').first().evaluate(({dataset}) => dataset.span) === axis);
     const now = await tools.keys(page);
     check('n opens the next, as it is', !now.title && !now.azimuth, JSON.stringify(now));
     check('which has nothing to undo', await page.getByRole('button', {name: 'Undo (z)'}).isDisabled());
@@ -50,10 +59,46 @@ export async function listed(tools) {
     await page.getByRole('button', {name: /warm.json/}).click();
     await shown(page, 'v2.nrrd');
     check('a recipe opens its volume', (await tools.keys(page)).azimuth === 33);
+    await page.getByRole('button', {name: /link to this state/}).click();
+    check('which a link names', /volume=%5B%22warm.json%22/.test(await page.getByLabel('Text to copy').inputValue()));
+    await page.keyboard.press('Escape');
     const other = await open({}, link);
     await shown(other, '<b>v3.nrrd');
     await shown(page, '<b>v3.nrrd');
     check('a link names its volume, which all pages see', true);
+    await linked(tools, page, other, link);
     await other.context().close();
     await page.context().close();
+}
+
+/** Of what is open, and of what there is not, when the list is done last. */
+async function linked({check, keys, rest}, page, other, link) {
+    const opened = () => page.evaluate(() => window.snowglass.page.info.opened), before = await opened();
+    await page.evaluate(() => window.snowglass.recipe.set({azimuth: 25}));
+    await rest(page);
+    await other.goto(link.replace('recipe=%7B', 'recipe=%7B%22title%22%3A%22linked%22%2C'));
+    await other.reload();
+    await page.waitForFunction(() => window.snowglass.recipe.keys.title === 'linked', null, {polling: 20});
+    check('a link to what is open does not open it again', await opened() === before, await opened());
+    await other.addInitScript(() => {
+        const {parse} = JSON;
+        JSON.parse = (...all) => {
+            const message = parse(...all);
+            if (message?.t === 'folder' && !window.late)
+                window.late = {...message};
+            return message?.t === 'folder' ? {...message, done: false} : message;
+        };
+    });
+    await other.goto(link.replace(/volume=[^&]*/, 'volume=%5B%22gone.nrrd%22%2C%22%22%5D').replace('recipe=%7B', 'recipe=%7B%22title%22%3A%22lost%22%2C'));
+    await other.reload();
+    await rest(other);
+    await other.waitForFunction(() => document.querySelectorAll('.tiles b').length === 5, null, {polling: 20});
+    await other.evaluate(() => window.snowglass.engine.tell('folder', window.late));
+    const said = await other.locator('.said').textContent();
+    check('a link to what there is not says so', /has no gone.nrrd/.test(said), said);
+    await page.locator('.picture canvas').first().focus();
+    await page.keyboard.press('n');
+    await shown(page, 'v1.nrrd');
+    await rest(other);
+    check('and nothing else gets its state', !(await keys(page)).title, (await keys(page)).title);
 }

@@ -145,6 +145,11 @@ async function thick({check, copied, keepBytes, file, slicesRest}, page) {
     check('the command has it', command.includes(' --slab 9mm:mean'), command);
     writeFileSync(file('slice.txt'), command);
     await keepBytes(page, 'slice.png', 'page.slices.panes[1].file');
+    await page.evaluate(() => window.snowglass.slices.set({slab: '0mm:max'}));
+    await page.waitForFunction(() => window.snowglass.slices.panes.every(pane => !pane.busy && !pane.bitmap), null, {polling: 20});
+    check('what cannot be drawn has no picture of something else', true);
+    await page.evaluate(() => window.snowglass.slices.set({slab: '9mm:mean'}));
+    await slicesRest(page);
 }
 
 async function linked({check, open}, page) {
