@@ -43,7 +43,6 @@ void describe_add(folder *f, const char *name, const char *series,
     if (list_path(f, name, path) && stat(path, &what) == 0) {
         made.bytes = S_ISREG(what.st_mode) ? (uint64_t)what.st_size : 0;
         made.changed = what.st_mtim.tv_sec;
-        identity_of(path, made.identity);
     }
     list_add(f, &made);
 }

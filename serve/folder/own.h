@@ -2,7 +2,6 @@
 #ifndef FOLDER_OWN_H
 #define FOLDER_OWN_H
 
-#include "draw/identity.h"
 #include "folder/folder.h"
 
 #include <limits.h>
@@ -24,7 +23,6 @@ typedef struct folder_entry {
     snow_volume_info *info; /* of a volume */
     uint64_t bytes;
     int64_t changed; /* seconds since 1970 */
-    char identity[IDENTITY_BYTES];
     char *cover; /* a data URL, "" where there is none; NULL: not made */
 } folder_entry;
 
