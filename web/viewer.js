@@ -434,7 +434,7 @@ engine.on('info', info => {
     document.title = `${info.name} - snowglass`;
     title.textContent = `${info.name}  ${info.dims.join(' x ')}${info.live ? '' : ` ${info.type}`}, ` +
         distances(info);
-    if (part)
+    if (part && !renewed) // a recipe may have a mask that its volume had not
         panel.update();
     else
         panel.build();

@@ -195,7 +195,7 @@ def chosen():
         nrrd(f"{place}/{name}.nrrd", (48, 40, 36), voxels)
     nrrd(f"{place}/cut.nrrd", (48, 40, 36), voxels[:999])
     with open(f"{place}/warm.json", "w") as out:
-        json.dump({"input": "v2.nrrd", "azimuth": 33}, out)
+        json.dump({"input": "v2.nrrd", "azimuth": 33, "mask": "v2.nrrd", "labels": "60-255"}, out)
     plan("folder", place)
 
 

@@ -56,9 +56,13 @@ export async function listed(tools) {
     await page.keyboard.press('Escape');
     await page.locator('.picture canvas').first().focus();
     await page.keyboard.press('o');
-    await page.getByRole('button', {name: /warm.json/}).click();
+    await page.getByRole('button', {name: /^v2.nrrd/}).click();
     await shown(page, 'v2.nrrd');
+    await page.keyboard.press('o');
+    await page.getByRole('button', {name: /warm.json/}).click();
+    await page.waitForFunction(() => window.snowglass.page.info.mask && window.snowglass.page.rest, null, {polling: 20});
     check('a recipe opens its volume', (await tools.keys(page)).azimuth === 33);
+    check('and its mask can be switched', await page.getByText('only what the mask keeps').count() === 1);
     await page.getByRole('button', {name: /link to this state/}).click();
     check('which a link names', /volume=%5B%22warm.json%22/.test(await page.getByLabel('Text to copy').inputValue()));
     await page.keyboard.press('Escape');
@@ -76,8 +80,11 @@ async function linked({check, keys, rest}, page, other, link) {
     const opened = () => page.evaluate(() => window.snowglass.page.info.opened), before = await opened();
     await page.evaluate(() => window.snowglass.recipe.set({azimuth: 25}));
     await rest(page);
-    await other.goto(link.replace('recipe=%7B', 'recipe=%7B%22title%22%3A%22linked%22%2C'));
-    await other.reload();
+    const follow = async (url, title) => {
+        await other.goto('about:blank'); // another fragment alone loads nothing
+        await other.goto(url.replace('recipe=%7B', `recipe=%7B%22title%22%3A%22${title}%22%2C`));
+    };
+    await follow(link, 'linked');
     await page.waitForFunction(() => window.snowglass.recipe.keys.title === 'linked', null, {polling: 20});
     check('a link to what is open does not open it again', await opened() === before, await opened());
     await other.addInitScript(() => {
@@ -89,8 +96,7 @@ async function linked({check, keys, rest}, page, other, link) {
             return message?.t === 'folder' ? {...message, done: false} : message;
         };
     });
-    await other.goto(link.replace(/volume=[^&]*/, 'volume=%5B%22gone.nrrd%22%2C%22%22%5D').replace('recipe=%7B', 'recipe=%7B%22title%22%3A%22lost%22%2C'));
-    await other.reload();
+    await follow(link.replace(/volume=[^&]*/, 'volume=%5B%22gone.nrrd%22%2C%22%22%5D'), 'lost');
     await rest(other);
     await other.waitForFunction(() => document.querySelectorAll('.tiles b').length === 5, null, {polling: 20});
     await other.evaluate(() => window.snowglass.engine.tell('folder', window.late));
