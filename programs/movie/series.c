@@ -99,14 +99,29 @@ static int wanted_time(const step_times *times, double *out) {
     return CONTINUE;
 }
 
-static int nearest_of_all(step_times *times, double wanted, int64_t *out) {
-    double best = INFINITY, time;
+/* How far the time of a step is behind the wanted one, in seconds, or in the
+ * unit of the input where that is not known.  Each file may count from a date
+ * of its own. */
+static int distance_of(step_times *times, int64_t step, double *out) {
+    double time, wanted;
+    int done = time_of(times, step, &time);
+    if (done == CONTINUE)
+        done = wanted_time(times, &wanted);
+    if (done != CONTINUE)
+        return done;
+    const double unit = seconds_of(times->at.time_unit);
+    *out = (time - wanted) * (unit > 0 ? unit : 1);
+    return CONTINUE;
+}
+
+static int nearest_of_all(step_times *times, int64_t *out) {
+    double best = INFINITY, distance;
     for (int64_t i = 0; i < times->count; i++) {
-        int done = time_of(times, i, &time);
+        int done = distance_of(times, i, &distance);
         if (done != CONTINUE)
             return done;
-        if (fabs(time - wanted) < best) {
-            best = fabs(time - wanted);
+        if (fabs(distance) < best) {
+            best = fabs(distance);
             *out = i;
         }
     }
@@ -114,39 +129,35 @@ static int nearest_of_all(step_times *times, double wanted, int64_t *out) {
 }
 
 /* Halves the steps, whose times rise. */
-static int nearest_of_rising(step_times *times, double wanted, int64_t *out) {
+static int nearest_of_rising(step_times *times, int64_t *out) {
     int64_t low = 0, high = times->count - 1;
-    double ends[2], time;
-    int done = time_of(times, low, &ends[0]);
+    double ends[2], distance;
+    int done = distance_of(times, low, &ends[0]);
     if (done == CONTINUE)
-        done = time_of(times, high, &ends[1]);
+        done = distance_of(times, high, &ends[1]);
     while (done == CONTINUE && high - low > 1) {
         int64_t middle = low + (high - low) / 2;
-        done = time_of(times, middle, &time);
-        if (time > wanted) {
+        done = distance_of(times, middle, &distance);
+        if (distance > 0) {
             high = middle;
-            ends[1] = time;
+            ends[1] = distance;
         } else {
             low = middle;
-            ends[0] = time;
+            ends[0] = distance;
         }
     }
-    *out = fabs(ends[0] - wanted) <= fabs(ends[1] - wanted) ? low : high;
+    if (done == CONTINUE)
+        *out = fabs(ends[0]) <= fabs(ends[1]) ? low : high;
     return done;
 }
 
 static int nearest(step_times *times, int64_t *out) {
     char text[128] = "";
-    double first, wanted;
-    int done = time_of(times, 0, &first);
+    double time;
+    int done = times->count <= STEPS_ALL ? nearest_of_all(times, out)
+                                         : nearest_of_rising(times, out);
     if (done == CONTINUE)
-        done = wanted_time(times, &wanted);
-    if (done != CONTINUE)
-        return done;
-    done = times->count <= STEPS_ALL ? nearest_of_all(times, wanted, out)
-                                     : nearest_of_rising(times, wanted, out);
-    if (done == CONTINUE)
-        done = time_of(times, *out, &first);
+        done = time_of(times, *out, &time);
     if (done == CONTINUE && times->opts->verbosity >= 0 &&
         snow_time_text(&times->at, NULL, text, sizeof text))
         say("step %" PRId64 " of %" PRId64 " is the nearest, at %s", *out,

@@ -58,7 +58,7 @@ bool read_time(const option_row *row, const char *text, void *field,
     options *out = (options *)(void *)((char *)field - row->field);
     int64_t value = 0;
     int year, month, day;
-    const bool dated = sscanf(text, "%4d-%2d-%2d", &year, &month, &day) == 3;
+    const bool dated = sscanf(text, "%8d-%2d-%2d", &year, &month, &day) == 3;
     const char *colon = dated ? NULL : strchr(text, ':');
     out->date = dated ? text : NULL;
     out->time = 0;

@@ -274,6 +274,26 @@ static bool format_number(const snow_volume_info *info, const char *format,
            add_plain(at + length, strlen(at + length), out, capacity, &used);
 }
 
+/* Whether a text is nothing but a date, with a time and a zone or without:
+ * "2000-01-31", "-100-1-31 12:00", "2000-01-31T12:00:00.5+05:30". */
+static bool is_date(const char *at) {
+    static const char digits[] = "0123456789";
+    for (int part = 0; part < 3; part++) {
+        at += *at == '-';
+        at += strspn(at, digits);
+    }
+    if (!*at)
+        return true;
+    if (!strchr(" T_", *at))
+        return false;
+    const size_t time = strspn(at + 1, "0123456789:.");
+    at += 1 + time;
+    at += strspn(at, " ");
+    if (*at == '+' || *at == '-')
+        return time && !at[1 + strspn(at + 1, "0123456789:")];
+    return time && !at[*at == 'Z'];
+}
+
 bool snow_time_value(const snow_volume_info *given, const char *date,
                      double *out) {
     snow_volume_info info;
@@ -281,14 +301,13 @@ bool snow_time_value(const snow_volume_info *given, const char *date,
     double seconds, wanted, unit;
     if (SNOW_RECORD_READ(NULL, snow_volume_info, given, &info) !=
             SNOW_STATUS_OK ||
-        !read_unit(&info, &begin, &seconds, &unit) ||
+        !read_unit(&info, &begin, &seconds, &unit) || !date || !is_date(date) ||
         !read_date(date, &m, &wanted))
         return false;
     const calendar c = calendar_of(info.calendar);
     const int64_t number = number_of(c, &m);
     date_of(c, number, &day);
-    if (m.hour < 0 || m.hour > 24 || m.minute < 0 || m.minute > 59 ||
-        date[strspn(date, "0123456789-+:._ TZ")])
+    if (m.hour > 24 || m.minute > 59 || (m.hour == 24 && m.minute))
         return false;
     if (day.year != m.year || day.month != m.month || day.day != m.day)
         return false; /* such as February 30 */

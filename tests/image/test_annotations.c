@@ -82,6 +82,14 @@ static void dates_are_those_of_their_calendar(void **state) {
     assert_false(snow_time_value(&info, "2000-02-29", &value));
     assert_false(snow_time_value(&info, "2000-13-01", &value));
     assert_false(snow_time_value(&info, "tomorrow", &value));
+    assert_false(snow_time_value(&info, "2000-03-01:2000-04-01", &value));
+    assert_false(snow_time_value(&info, "2000-03-01.5", &value));
+    assert_false(snow_time_value(&info, "2000-03-01 24:30", &value));
+    assert_false(snow_time_value(&info, "2000-03-01 06:00 UTC+1", &value));
+    assert_true(snow_time_value(&info, "2000-03-01 09:30 +03:00", &value));
+    assert_true(snow_time_value(&info, "-0001-12-31T24:00", &value));
+    assert_true(value == -2000 * 365 * 24);
+    assert_true(snow_time_value(&info, "2000-03-01T06:30:00Z", &value));
     info = at_time("h", "", 0);
     assert_false(snow_time_value(&info, "2000-03-01", &value));
     assert_true(value == 59 * 24 + 6.5);

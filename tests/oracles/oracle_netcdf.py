@@ -409,6 +409,20 @@ if path:
                       oracle.affine((2, 1, 2), (1, -79.5, 0)),
                       ["--time", time], unit="degrees")
     oracle.refuse(path, "the file has 24", ["--time", 24], 2)
+# Files of one day each, which count from a date of their own.
+UNITS = ("minutes since 2001-02-26 00:00:00", "minutes since 2001-02-27 00:00:00",
+         "minutes since 2001-02-28", "hours since 2001-02-28 06:00:00")
+for n, unit in enumerate(UNITS):
+    with netCDF4.Dataset(f"day{n}.nc", "w") as file:
+        for name, size in ("time", 1), ("z", 4), ("y", 5), ("x", 6):
+            file.createDimension(name, size)
+        file.createVariable("time", "f8", ("time",))[:] = 30
+        file["time"].units = unit
+        v = file.createVariable("rho", "f4", ("time", *ZYX))
+        v[:] = np.full((1, 4, 5, 6), n, "f4")
+for n, date in enumerate(("2001-02-26", "2001-02-27T01:00", "2001-02-28 03:00",
+                          "2001-03-02")):
+    oracle.expect("day*.nc", np.full((4, 5, 6), n, "f4"), options=["--time", date])
 # MINC is recognised by its variables, not by a version that old files lack.
 for beside, attributes in (("image-max", {}), ("rootvariable", {}),
                            ("w", {"varid": "MINC standard variable"})):
