@@ -82,24 +82,11 @@ static void describe_place(const slice_work *w, char *out, size_t size) {
                  slice_position(w, (double)first->index), unit);
 }
 
-/* "; maximum of 5 slices", or "". */
-static void describe_slab(const slice_work *w, char *out, size_t size) {
-    const int axis = w->places[0].axis;
-    const slab *s = &w->slabs[axis];
-    snprintf(out, size, "; ");
-    if (s->half)
-        slab_describe(s,
-                      slab_around(s, &w->whole, axis, w->places[0].index).count,
-                      out + 2, size - 2);
-    else
-        *out = 0;
-}
-
 static void report(const slice_work *w) {
     char volume[256], place[256], colors[512], thick[64];
     describe_volume(&w->whole, volume, sizeof volume);
     describe_place(w, place, sizeof place);
-    describe_slab(w, thick, sizeof thick);
+    slice_describe_slab(w, thick, sizeof thick);
     slice_describe_colors(w, colors, sizeof colors);
     config_note_slice(&w->opts, w->channels.list.count ? NULL : w->transfer,
                       w->kind == SLICE_ORTHO ? NULL : slice_axis_name(w),

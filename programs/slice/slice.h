@@ -90,6 +90,9 @@ int slice_measure(slice_work *w);
 /* The look without its opacities, which a slice ignores. */
 void slice_describe_colors(const slice_work *w, char *out, size_t size);
 
+/* "; maximum of 5 slices", the most that a picture has, or "". */
+void slice_describe_slab(const slice_work *w, char *out, size_t size);
+
 /* --- slice_draw.c --------------------------------------------------------- */
 
 /* One of the slices, or the picture of all. */

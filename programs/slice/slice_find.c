@@ -33,7 +33,7 @@ double slice_position(const slice_work *w, double index) {
     for (int i = 0; i < 3; i++)
         at += info->matrix[w->world][i] *
               (i == w->axis ? index : ((double)info->dims[i] - 1) / 2);
-    return at / world_length(info, w->world);
+    return at / world_length(info, w->world) + 0.0; /* not -0 */
 }
 
 /* --- what is asked -------------------------------------------------------- */

@@ -46,8 +46,9 @@ static int make_shots(const slice_work *w, shot_list *out) {
 
 static void report(const slice_work *w) {
     const options *opts = &w->opts;
-    char volume[256], colors[1024];
+    char volume[256], colors[1024], thick[64];
     describe_volume(&w->whole, volume, sizeof volume);
+    slice_describe_slab(w, thick, sizeof thick);
     slice_describe_colors(w, colors, sizeof colors);
     config_note_slice(opts, w->channels.list.count ? NULL : w->transfer,
                       slice_axis_name(w), -1);
@@ -55,10 +56,10 @@ static void report(const slice_work *w) {
         config_note_channels(opts, &w->channels.list, SNOW_SHADE_NONE, NULL);
     if (opts->verbosity >= 0)
         say("%s: %s; %s slices %" PRId64 " to %" PRId64 " of 0 to %" PRId64
-            "; %s; %" PRId64 " frame%s of %dx%d to %s",
+            "%s; %s; %" PRId64 " frame%s of %dx%d to %s",
             name_of_input(w->path), volume, slice_axis_name(w),
             w->places[0].index, w->places[w->count - 1].index,
-            w->whole.dims[w->axis] - 1, colors, w->count,
+            w->whole.dims[w->axis] - 1, thick, colors, w->count,
             w->count == 1 ? "" : "s", w->size[0], w->size[1], opts->output);
     if (opts->verbosity >= 0)
         measures_report(w->measures);

@@ -237,6 +237,22 @@ int slice_open_colors(slice_work *w) {
     return open_look(w->context, opts, w->volume, &w->transfer);
 }
 
+void slice_describe_slab(const slice_work *w, char *out, size_t size) {
+    int64_t most = 0;
+    *out = 0;
+    for (int64_t n = 0; n < w->count; n++) {
+        const snow_slice_place *place = &w->places[n];
+        const slab *s = &w->slabs[place->axis];
+        const slab_slices slices =
+            slab_around(s, &w->whole, place->axis, place->index);
+        if (!s->half || slices.count <= most)
+            continue;
+        most = slices.count;
+        snprintf(out, size, "; ");
+        slab_describe(s, most, out + 2, size - 2);
+    }
+}
+
 void slice_describe_colors(const slice_work *w, char *out, size_t size) {
     if (w->transfer && w->channels.list.count) {
         channels_describe(&w->channels, out, size);

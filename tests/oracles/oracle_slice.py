@@ -209,6 +209,9 @@ oracle.tool("slice", "a.nii", "-o", "s_%d.npy", "-y", "-q", "--at", "2:5",
 check("slabs of a series", all(near(np.load(f"s_{n}.npy"), plane(
     VOXELS[:, :, n + 1:n + 4].mean(2, keepdims=True), 2, 0), 0.0005)
     for n in range(3)))
+for more in (["-o", "s_%d.npy", "--at", "0:3"], ["-o", "s.png", "--grid", "2x1"]):
+    done = oracle.tool("slice", "a.nii", "-y", "--slab", "3", *more)
+    check(f"the slab of {more[-1]} is told", "; maximum of 3 slices" in done.stderr)
 for wrong in ("3s", "0mm", "-3mm", "3mm:sum", "nan", "mm", ""):
     done = run("a.nii", "--slab", wrong)
     check(f"no slab of {wrong!r}", done.returncode == 2 and
