@@ -155,9 +155,14 @@ def _meaning_of(source: Any) -> tuple[str, str, str]:
         return "", "", ""
 
     def text(value: Any) -> str:
+        if getattr(value, "shape", None) == (1,):  # as some write a text
+            value = value[0]
         if isinstance(value, bytes):
-            value = value.decode(errors="replace")
-        return value.replace("\0", "") if isinstance(value, str) else ""
+            value = value.decode(errors="surrogateescape")
+        if not isinstance(value, str):
+            return ""
+        # So h5py keeps bytes that are no UTF-8, too; as in files each is "?".
+        return value.replace("\0", "").encode(errors="replace").decode()
     name = text(getattr(source, "name", None)).rpartition("/")[2]
     return name, text(said.get("units")), \
         text(said.get("long_name")) or text(said.get("standard_name"))
@@ -245,7 +250,9 @@ def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
         source = source.expand_dims("one slice")
     names = [str(name) for name in source.dims]
     if axes is None:
-        axes = "".join(names) if sorted(names) == ["x", "y", "z"] else "zyx"
+        named = {"x", "y"} <= set(names) and len(names) == 3
+        axes = "".join(name if name in ("x", "y") else "z" for name in names) \
+            if named else "zyx"
     if spacing is None and affine is None and len(names) == 3:
         affine, found = _place_of(source, dict(zip(axes, names)))
         unit = unit or found

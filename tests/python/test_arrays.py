@@ -178,6 +178,11 @@ class Arrays(unittest.TestCase):
         long = sg.Volume(times.isel(time=1).rename("\u00e4" * 99))
         self.assertEqual(set(long.info["quantity"]), {"\u00e4"})
         self.assertEqual(sg.Volume(block()).info["quantity"], "")
+        turned = times.rename(lat="y", lon="x").transpose("time", "x", "y")
+        for part in turned.isel(time=1), turned.isel(time=[1]):
+            volume = sg.Volume(part)
+            numpy.testing.assert_array_equal(numpy.asarray(volume)[0], block()[1].T)
+            numpy.testing.assert_allclose(volume.affine[:2, 3], (0, -5))
 
     @unittest.skipUnless(shutil.which("localedef") and
                          os.path.exists("/usr/share/i18n/locales/de_DE"),

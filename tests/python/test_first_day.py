@@ -557,3 +557,9 @@ class Stumbles(InFolder):
                 data = file.create_dataset(repr(unit), data=ball())
                 data.attrs["units"] = unit
                 self.assertEqual(sg.Volume(data)._caption(), f"{unit!r} (K)")
+            data = file.create_dataset("listed", data=ball())
+            data.attrs["units"] = numpy.array([b"K"])
+            self.assertEqual(sg.Volume(data)._caption(), "listed (K)")
+            for unit in (b"\xb0C", numpy.bytes_(b"\xb0C")):  # of Latin-1
+                data.attrs["units"] = unit
+                self.assertEqual(sg.Volume(data)._caption(), "listed (?C)")
