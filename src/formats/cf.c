@@ -1,6 +1,7 @@
 /* formats/cf.c - coordinates and missing values by the Climate and Forecast
  * conventions (cf.h). */
 #include "formats/cf.h"
+#include "formats/array.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -268,15 +269,10 @@ void snow_cf_time(const cf_axis *axis, snow_volume_info *info) {
     memcpy(info->calendar, axis->calendar, sizeof info->calendar);
 }
 
-/* Copies a text to a room, of which a longer one fills all. */
-static void keep(const char *text, char *to, size_t capacity) {
-    snprintf(to, capacity, "%.*s", (int)capacity - 1, text);
-}
-
 void snow_cf_name(const char *name, const cf_attributes *says,
                   snow_volume_info *info) {
-    keep(name, info->quantity, sizeof info->quantity);
-    keep(says->units, info->value_unit, sizeof info->value_unit);
-    keep(*says->long_name ? says->long_name : says->standard_name,
-         info->description, sizeof info->description);
+    snow_copy_name(name, info->quantity, sizeof info->quantity);
+    snow_copy_name(says->units, info->value_unit, sizeof info->value_unit);
+    snow_copy_name(*says->long_name ? says->long_name : says->standard_name,
+                   info->description, sizeof info->description);
 }

@@ -179,6 +179,15 @@ oracle.expect("p.h5:/C/B/x", np.full(m.shape, 1.5), oracle.affine(
 oracle.tells("p.h5:/C/B/x", quantity="B x", value_unit="T")
 oracle.tells("p.h5:/C/B/y", quantity="B y", value_unit="T")
 
+# Texts that are not UTF-8, and cut ones, hold whole letters.
+with h5py.File("l.h5", "w") as file:
+    file["t"] = m
+    file["t"].attrs.update(units=np.bytes_(b"\xb0C"), long_name="\u00b5" * 99)
+found = oracle.told("l.h5")
+told = found.get("value_unit"), {*found.get("long_name", "")}
+if told != ("?C", {"\u00b5"}):
+    oracle.fail("l.h5", f"told {told}")
+
 # Modes around an axis: FBPIC's layout, that of z before r, femm's.
 SIDE, LONG = 30, 25
 
