@@ -65,7 +65,7 @@ int movie_check(const options *opts) {
 
 int movie_open(const options *opts, shot_list *list, movie **out) {
     movie *s = calloc(1, sizeof *s);
-    double *times = calloc((size_t)list->count, sizeof *times);
+    frame_time *times = calloc((size_t)list->count, sizeof *times);
     measures **measured = calloc((size_t)list->count, sizeof(measures *));
     if (!s || !times || !measured) {
         free(s);
@@ -286,7 +286,7 @@ static void hand_over(run *r, int64_t index, snow_image *image) {
         r->s->form.flatten = flat;
     }
     r->s->has_annotations = true;
-    r->s->times[index] = state->drawn.whole.time_value;
+    movie_take_time(r->s, index, &state->drawn.whole);
     r->s->measured[index] = r->shots->measured; /* NULL: as all frames */
     r->shots->measured = NULL;
     (void)frames_put(r->s->queue, index, image,

@@ -128,14 +128,17 @@ static bool hold_times(const options *opts, const step_files *files,
     snow_volume_options data = data_options(opts);
     snow_volume_info info = {.size = sizeof info};
     double last = NAN;
+    char unit[sizeof info.time_unit] = "";
     bool held = snow_context_new(NULL, &context) == SNOW_STATUS_OK;
     data.time = 0;
     data.each_time = true;
     for (int64_t i = first; i < files->count && held; i++) {
         held = snow_volume_inspect(context, files->paths[i], &data, &info) ==
                    SNOW_STATUS_OK &&
-               isfinite(info.time_value) && info.time_value != last;
+               isfinite(info.time_value) &&
+               (info.time_value != last || strcmp(info.time_unit, unit) != 0);
         last = info.time_value;
+        memcpy(unit, info.time_unit, sizeof unit);
     }
     snow_context_free(context);
     return held;

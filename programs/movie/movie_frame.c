@@ -48,6 +48,13 @@ static snow_status fill_bytes(const movie *s, frame_slot *slot,
     return SNOW_STATUS_OK;
 }
 
+void movie_take_time(movie *s, int64_t index, const snow_volume_info *info) {
+    frame_time *time = &s->times[index];
+    time->value = info->time_value;
+    memcpy(time->unit, info->time_unit, sizeof time->unit);
+    memcpy(time->calendar, info->calendar, sizeof time->calendar);
+}
+
 /* Makes a new frame: its unfinished file and its bytes. */
 static snow_status make_frame(const movie *s, frame_slot *slot) {
     const movie_shot *shot = &s->list->shots[slot->index];
@@ -55,7 +62,11 @@ static snow_status make_frame(const movie *s, frame_slot *slot) {
     snow_image_options form = s->form;
     picture_annotations annotations = s->annotations;
     char path[PATH_MAX];
-    annotations.info.time_value = s->times[slot->index];
+    const frame_time *time = &s->times[slot->index];
+    snow_volume_info *info = &annotations.info;
+    info->time_value = time->value;
+    memcpy(info->time_unit, time->unit, sizeof info->time_unit);
+    memcpy(info->calendar, time->calendar, sizeof info->calendar);
     if (s->list->steps && !s->list->slices)
         annotations.measures = s->measured[slot->index];
     if (s->list->slices) {

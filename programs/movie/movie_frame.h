@@ -15,6 +15,12 @@
 #include "movie/movie_encoder.h"
 #include "movie/movie_record.h"
 
+/* A physical time; each file may count from a date of its own. */
+typedef struct frame_time {
+    double value;
+    char unit[64], calendar[24]; /* as of snow_volume_info */
+} frame_time;
+
 struct movie {
     const options *opts;
     const shot_list *list;
@@ -30,9 +36,12 @@ struct movie {
     snow_image_options form;         /* the form of the frames' files */
     picture_annotations annotations; /* known from the first picture on */
     bool has_annotations;
-    double *times; /* physical ones of the frames, as their pictures come */
+    frame_time *times; /* of the frames, as their pictures come */
     measures **measured; /* of each step, until it is drawn */
 };
+
+/* Keeps the time of a frame's volume for what is drawn over it. */
+void movie_take_time(movie *s, int64_t index, const snow_volume_info *info);
 
 /* The two halves, and what ends a slot (frames.h); `user` is a movie. */
 snow_status movie_frame_prepare(void *user, frame_slot *slot);

@@ -423,6 +423,15 @@ for n, unit in enumerate(UNITS):
 for n, date in enumerate(("2001-02-26", "2001-02-27T01:00", "2001-02-28 03:00",
                           "2001-03-02")):
     oracle.expect("day*.nc", np.full((4, 5, 6), n, "f4"), options=["--time", date])
+LOOK = ["-q", "-y", "-s", "160x120", "--range", "0,9", "--opacity", "0:0,9:0.5",
+        "-c", "grey", "--shade", "none", "--annotate", "time", "-o"]
+days = [f"day{n}.nc" for n in range(4)]
+oracle.tool("movie", *days, *LOOK, "movie_%d.png")
+for n, day in enumerate(days):
+    oracle.tool("render", day, *LOOK, "day.png")
+    done = oracle.tool("compare", "day.png", f"movie_{n}.png")
+    if done.returncode:
+        oracle.fail(f"the date of frame {n}", done.stdout + done.stderr)
 # MINC is recognised by its variables, not by a version that old files lack.
 for beside, attributes in (("image-max", {}), ("rootvariable", {}),
                            ("w", {"varid": "MINC standard variable"})):
