@@ -166,7 +166,7 @@ strangers = [
      ("a.vti", "lacks", "XML")),
     ("dicom", write("a.dcm", dicom(0, "1.2.840.10008.1.2.4.70")),
      ("a.dcm", "compressed DICOM", "1.2.840.10008.1.2.4.70")),
-    ("zarr", ["packed.zarr", *packed], ("packed.zarr", "lacks", "zstd")),
+    ("zarr", ["packed.zarr", *packed], ("packed.zarr", "not compressed by zstd", "copy it again")),
     ("refinement", write("a.vth", b'<?xml version="1.0"?>\n<VTKFile '
                          b'type="vtkOverlappingAMR" version="1.1"/>'),
      ("a.vth", "levels of refinement")),
