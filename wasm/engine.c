@@ -5,6 +5,7 @@
  * calls engine_step while there is work, and takes out what goes to the page.
  */
 #include "answers/answers.h"
+#include "levels.h"
 #include "message.h"
 #include "pack.h"
 #include "pieces.h"
@@ -16,11 +17,15 @@
 
 #include <emscripten.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* A page has 2 GiB: what is larger stays in its file. */
 #define MEMORY_MOST ((uint64_t)1400 << 20)
+
+/* What is larger is not fetched from a server. */
+#define FETCHED_MOST ((double)(1 << 30))
 
 /* The one page. */
 #define CLIENT 1
@@ -34,15 +39,30 @@ static struct {
     renderer *renderer;
     set_log sets;
     outgoing *waiting, *shown;
+    bool opened;
+    char noted[4096];
 } e;
 
 static void be_woken(void *user) {
     (void)user;
 }
 
+/* The page shows one line: while it is opened, all that was noted. */
 static void hear_line(void *user, const char *line) {
     (void)user;
-    answer_said(e.box, CLIENT, line);
+    const size_t used = strlen(e.noted);
+    if (e.opened)
+        answer_said(e.box, CLIENT, line);
+    else
+        snprintf(e.noted + used, sizeof e.noted - used, "%s%s",
+                 used ? "\n" : "", line);
+}
+
+static void tell_noted(bool last) {
+    e.opened = true;
+    const char *end = last ? strrchr(e.noted, '\n') : NULL;
+    if (*e.noted)
+        answer_said(e.box, CLIENT, end ? end + 1 : e.noted);
 }
 
 EMSCRIPTEN_KEEPALIVE void *engine_room(size_t bytes) {
@@ -53,13 +73,50 @@ EMSCRIPTEN_KEEPALIVE void engine_leave(void *room) {
     free(room);
 }
 
+static int refuse_size(const char *path, double bytes) {
+    return fail_memory(
+        "%s: has %.0f MiB of voxels, and a page fetches at most %.0f; name a "
+        "coarser level behind the address, or get the file and open it",
+        path, bytes / 0x1p20, FETCHED_MOST / 0x1p20);
+}
+
+/* Of a server: the level that is fetched, unless the address names one. */
+static int settle_level(const char *path, double most, json_t *tree) {
+    snow_context *context;
+    snow_volume_info info = {.size = sizeof info};
+    if (e.opts.dataset)
+        return CONTINUE;
+    level_choice choice = level_choose(path, most);
+    if (choice.left > FETCHED_MOST)
+        return refuse_size(path, choice.left);
+    if (*choice.dataset) {
+        json_object_set_new(tree, "dataset", json_string(choice.dataset));
+        say("level %d of %d (%s) is shown, since the finest has %.0f MiB of "
+            "voxels; the path of another behind the address shows that",
+            choice.level, choice.levels, choice.dataset,
+            choice.bytes / 0x1p20);
+    } else if (snow_context_new(NULL, &context) == SNOW_STATUS_OK) {
+        snow_volume_options data = data_options(&e.opts);
+        double bytes = 0;
+        if (snow_volume_inspect(context, path, &data, &info) == SNOW_STATUS_OK)
+            bytes = (double)info.dims[0] * (double)info.dims[1] *
+                    (double)info.dims[2] * (double)snow_type_size(info.type);
+        snow_context_free(context);
+        if (bytes > FETCHED_MOST)
+            return refuse_size(path, bytes);
+    }
+    return CONTINUE;
+}
+
 /* The recipe that the page begins with, which says how a raw file is read
  * too. */
-static int open_drawing(const char *recipe) {
+static int open_drawing(const char *recipe, double most) {
     json_t *tree = json_loads(recipe, JSON_REJECT_DUPLICATES, NULL);
     if (!json_is_object(tree))
         return fail_usage("the recipe of the page is damaged");
     int done = config_take_tree(&e.opts, verb_of(VERB_RENDER), tree);
+    if (done == CONTINUE && most > 0)
+        done = settle_level(e.opts.operands[0], most, tree);
     if (done == CONTINUE)
         done = look_load(&e.opts); /* the recipe may name a transfer function */
     e.state = state_new(json_deep_copy(tree));
@@ -70,9 +127,11 @@ static int open_drawing(const char *recipe) {
     return done;
 }
 
-/* Opens a file of the page, or phantom:NAME.  False: a text that waits says
- * why.  Only once. */
-EMSCRIPTEN_KEEPALIVE bool engine_open(const char *path, const char *recipe) {
+/* Opens a file of the page, or phantom:NAME.  Of an image on a server the finest
+ * level with at most `most` bytes of voxels is taken; 0: it is on none.  False:
+ * a text that waits says why.  Only once. */
+EMSCRIPTEN_KEEPALIVE bool engine_open(const char *path, const char *recipe,
+                                      double most) {
     options_init(&e.opts);
     e.operands[0] = strdup(path);
     e.opts.operands = e.operands;
@@ -81,8 +140,13 @@ EMSCRIPTEN_KEEPALIVE bool engine_open(const char *path, const char *recipe) {
     e.opts.progress = "never";
     e.box = outbox_new(be_woken, NULL);
     say_to(hear_line, NULL);
-    if (!e.box || open_drawing(recipe) != CONTINUE)
+    if (!e.box)
         return false;
+    if (open_drawing(recipe, most) != CONTINUE) {
+        tell_noted(true);
+        return false;
+    }
+    tell_noted(false);
     pieces_begin(&e.drawing);
     renderer_begin(&e.drawing, e.state, e.box);
     e.renderer = renderer_new(&e.drawing, e.state, e.box, packer_new(e.box),

@@ -3,10 +3,13 @@
 #include "files.h"
 #include "host.h"
 
+#include "base/base.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -16,12 +19,12 @@
 #define FILES_MOST 64
 #define NAME_MOST 255
 
-/* An open file, or a folder with its path. */
+/* An open file, or a folder. */
 typedef struct open_file {
     bool used;
     int file;          /* the host's, or HOST_FOLDER */
     uint64_t position; /* of a folder: entries that were read */
-    char *folder;
+    char *path;        /* of a folder, and of a file of a server */
 } open_file;
 
 static open_file files[FILES_MOST];
@@ -30,6 +33,24 @@ static open_file *file_at(int descriptor) {
     bool known = descriptor > STDERR_FILENO && descriptor < FILES_MOST &&
                  files[descriptor].used;
     return known ? &files[descriptor] : NULL;
+}
+
+/* Other threads know a server's file by its path. */
+static int number_of(const open_file *f) {
+    return f->file >= HOST_FAR ? host_find(f->path) : f->file;
+}
+
+/* In the place of base/errors.c: what the page says of its files. */
+void snow_explain(int number, char *out, size_t size) {
+    char why[128] = "";
+    strerror_r(number, why, sizeof why);
+    *out = 0;
+    if (number == EIO)
+        host_fault(out, size);
+    if (!*out)
+        snprintf(out, size, "%s; check the name, and open all files of the "
+                            "volume together",
+                 why);
 }
 
 /* --- names ---------------------------------------------------------------- */
@@ -45,8 +66,8 @@ static void describe(int file, struct stat *out) {
 
 long __syscall_stat64(long path, long out) {
     int file = host_find((const char *)path);
-    if (file == HOST_NONE)
-        return -ENOENT;
+    if (file == HOST_NONE || file == HOST_FAILED)
+        return file == HOST_NONE ? -ENOENT : -EIO;
     describe(file, (struct stat *)out);
     return 0;
 }
@@ -65,23 +86,26 @@ long __syscall_fstat64(long descriptor, long out) {
     const open_file *f = file_at((int)descriptor);
     if (!f)
         return -EBADF;
-    describe(f->file, (struct stat *)out);
+    describe(number_of(f), (struct stat *)out);
     return 0;
 }
 
 long __syscall_open(const char *path, long flags, ...) {
     int file = host_find(path), descriptor = STDERR_FILENO + 1;
-    if (file == HOST_NONE)
-        return -ENOENT;
+    if (file == HOST_NONE || file == HOST_FAILED)
+        return file == HOST_NONE ? -ENOENT : -EIO;
     if ((flags & O_ACCMODE) != O_RDONLY)
         return -EROFS;
     while (descriptor < FILES_MOST && files[descriptor].used)
         descriptor++;
     if (descriptor == FILES_MOST)
         return -EMFILE;
-    files[descriptor] = (open_file){.used = true, .file = file};
-    if (file == HOST_FOLDER)
-        files[descriptor].folder = strdup(path);
+    char *copy =
+        file == HOST_FOLDER || file >= HOST_FAR ? strdup(path) : NULL;
+    if (!copy && (file == HOST_FOLDER || file >= HOST_FAR))
+        return -ENOMEM;
+    files[descriptor] =
+        (open_file){.used = true, .file = file, .path = copy};
     return descriptor;
 }
 
@@ -89,7 +113,7 @@ __wasi_errno_t __wasi_fd_close(__wasi_fd_t descriptor) {
     open_file *f = file_at((int)descriptor);
     if (!f)
         return __WASI_ERRNO_BADF;
-    free(f->folder);
+    free(f->path);
     *f = (open_file){.used = false};
     return __WASI_ERRNO_SUCCESS;
 }
@@ -98,11 +122,13 @@ __wasi_errno_t __wasi_fd_close(__wasi_fd_t descriptor) {
 long __syscall_getdents64(long descriptor, long out, long size) {
     open_file *f = file_at((int)descriptor);
     struct dirent *entry = (struct dirent *)out;
-    if (!f || !f->folder || (size_t)size < sizeof *entry)
+    if (!f || f->file != HOST_FOLDER || (size_t)size < sizeof *entry)
         return -EINVAL;
     memset(entry, 0, sizeof *entry);
-    if (!host_name(f->folder, (int)f->position, entry->d_name, NAME_MOST + 1))
-        return 0;
+    int named =
+        host_name(f->path, (int)f->position, entry->d_name, NAME_MOST + 1);
+    if (named <= 0)
+        return named ? -EIO : 0;
     f->position++;
     entry->d_ino = f->position;
     entry->d_off = (off_t)f->position;
@@ -115,8 +141,10 @@ long __syscall_getdents64(long descriptor, long out, long size) {
 static __wasi_errno_t read_from(int file, uint64_t *at,
                                 const __wasi_iovec_t *parts, size_t count,
                                 __wasi_size_t *read) {
-    double size = host_size(file);
     *read = 0;
+    if (file < 0) /* which was there when it was opened */
+        return __WASI_ERRNO_IO;
+    double size = host_size(file);
     for (size_t i = 0; i < count; i++) {
         double left = size - (double)*at;
         size_t length = left < (double)parts[i].buf_len
@@ -135,8 +163,9 @@ __wasi_errno_t __wasi_fd_read(__wasi_fd_t descriptor,
                               __wasi_size_t *read) {
     open_file *f = file_at((int)descriptor);
     return !f          ? __WASI_ERRNO_BADF
-           : f->folder ? __WASI_ERRNO_ISDIR
-                       : read_from(f->file, &f->position, parts, count, read);
+           : f->file == HOST_FOLDER
+               ? __WASI_ERRNO_ISDIR
+               : read_from(number_of(f), &f->position, parts, count, read);
 }
 
 __wasi_errno_t __wasi_fd_pread(__wasi_fd_t descriptor,
@@ -144,18 +173,19 @@ __wasi_errno_t __wasi_fd_pread(__wasi_fd_t descriptor,
                                __wasi_filesize_t from, __wasi_size_t *read) {
     const open_file *f = file_at((int)descriptor);
     uint64_t at = from;
-    return f && !f->folder ? read_from(f->file, &at, parts, count, read)
-                           : __WASI_ERRNO_BADF;
+    return f && f->file != HOST_FOLDER
+               ? read_from(number_of(f), &at, parts, count, read)
+               : __WASI_ERRNO_BADF;
 }
 
 __wasi_errno_t __wasi_fd_seek(__wasi_fd_t descriptor, __wasi_filedelta_t by,
                               __wasi_whence_t whence, __wasi_filesize_t *now) {
     open_file *f = file_at((int)descriptor);
-    if (!f || f->folder)
+    if (!f || f->file == HOST_FOLDER)
         return f ? __WASI_ERRNO_ISDIR : __WASI_ERRNO_SPIPE;
     int64_t from = whence == SEEK_SET   ? 0
                    : whence == SEEK_CUR ? (int64_t)f->position
-                                        : (int64_t)host_size(f->file);
+                                        : (int64_t)host_size(number_of(f));
     if (from + by < 0)
         return __WASI_ERRNO_INVAL;
     *now = f->position = (uint64_t)(from + by);

@@ -3,8 +3,9 @@
 #   cmake -D TOP=.. -D ENGINE_FILE=engine.wasm -D ESBUILD=esbuild -D OUT=viewer.html
 #         -P page.cmake
 #
-# `snowglass export` adds a volume to it.  The page can reach no other machine:
-# its policy says so.  The engine has at most 450,000 bytes when it is packed.
+# `snowglass export` adds a volume to it.  The page alone may read what its user names
+# on servers; one with a volume can reach no machine (cmd_export.c): policies say so.
+# The engine has at most 450,000 bytes when it is packed.
 cmake_minimum_required(VERSION 3.20)
 set(most 450000)
 set(folder ${OUT}.d)
@@ -40,7 +41,10 @@ read_short(${TOP}/web/viewer.css)
 file(APPEND ${OUT}.new "<style>${text}</style>\n</head>\n<body>\n<main id=\"viewer\"></main>\n")
 set(text "${engine}")
 add_script(" id=\"engine\" type=\"text/plain\"")
+read_short(${TOP}/wasm/page/remote.js)
+set(remote "${text}")
 read_short(${TOP}/wasm/page/worker.js)
+string(PREPEND text "${remote}")
 add_script(" id=\"worker\" type=\"text/plain\"")
 # Among the modules engine_wasm.js takes the place of engine_server.js, which it imports.
 file(REMOVE_RECURSE ${folder})

@@ -104,6 +104,28 @@ static bool append_file(page_text *t, FILE *file) {
 
 /* --- the page ------------------------------------------------------------- */
 
+/* The page alone may read what its user names; one with a volume, which may be
+ * of a person, can reach no machine: all policies of a page hold. */
+static const char closed[] =
+    "\n<meta http-equiv=\"content-security-policy\" content=\"connect-src "
+    "'none'\">";
+
+/* Puts the policy into the head of a page, if it has one. */
+static bool close_page(page_text *t) {
+    const size_t size = sizeof closed - 1;
+    append(t, "", 1); /* the end for strstr */
+    const char *head = t->lost ? NULL : strstr(t->bytes, "<head>");
+    if (!head)
+        return false;
+    const size_t before = (size_t)(head - t->bytes) + strlen("<head>");
+    const size_t rest = --t->length - before;
+    if (!extend(t, size))
+        return false;
+    memmove(t->bytes + before + size, t->bytes + before, rest);
+    memcpy(t->bytes + before, closed, size);
+    return true;
+}
+
 static int read_page(page_text *out) {
     char path[PATH_MAX] = "viewer.html", self[PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
@@ -121,7 +143,12 @@ static int read_page(page_text *out) {
                           path);
     bool good = append_file(out, page);
     fclose(page);
-    return good        ? CONTINUE
+    if (good && !close_page(out) && !out->lost)
+        return fail_usage("%s: has no head, so that it is not the page; run "
+                          "./dev web in the sources, or install the package "
+                          "snowglass-web again",
+                          path);
+    return good && !out->lost ? CONTINUE
            : out->lost ? fail_memory("%s: out of memory for the page; close "
                                      "other programs",
                                      path)

@@ -70,6 +70,10 @@ struct snow_context {
 #define snow_release snow_context_release
 #define snow_reserve snow_context_reserve
 
+/* Writes why stat, open or read has failed by an errno, and what to do: "No such
+ * file or directory; check the name and the permissions". */
+void snow_explain(int number, char *out, size_t size);
+
 /* Refuses a path that is NULL. */
 snow_status snow_need_path(snow_context *context, const char *path);
 

@@ -26,28 +26,6 @@ snow_status snow_lookup_keep(snow_context *context, snow_status status) {
     return status;
 }
 
-/* What a user can do about an error of stat, open or read. */
-static const char *remedy(int number) {
-    switch (number) {
-    case ENOENT:
-    case ENOTDIR:
-    case EACCES:
-    case EPERM:
-        return "check the name and the permissions";
-    case ELOOP:
-        return "correct the links";
-    case ENAMETOOLONG:
-        return "choose a shorter name";
-    case EMFILE:
-    case ENFILE:
-        return "close other files, or allow more of them (ulimit -n)";
-    case ENOMEM:
-        return "close other programs";
-    default:
-        return "check the disk";
-    }
-}
-
 bool snow_is_dangling(const char *path) {
     struct stat about;
     return stat(path, &about) && errno == ENOENT && lstat(path, &about) == 0;
@@ -56,8 +34,8 @@ bool snow_is_dangling(const char *path) {
 snow_status snow_lookup_fail(snow_context *context, const char *path,
                              const char *done) {
     const int number = errno;
-    char why[128] = "";
-    strerror_r(number, why, sizeof why);
+    char why[1024];
+    snow_explain(number, why, sizeof why);
     return snow_lookup_keep(
         context,
         number == ENOENT && snow_is_dangling(path)
@@ -66,8 +44,7 @@ snow_status snow_lookup_fail(snow_context *context, const char *path,
                         "there; get that file, or remove the link",
                         path, done)
             : snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                        "%s: cannot be %s: %s; %s", path, done, why,
-                        remedy(number)));
+                        "%s: cannot be %s: %s", path, done, why));
 }
 
 snow_status snow_look_at_given(snow_context *context, const char *path,

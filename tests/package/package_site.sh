@@ -70,7 +70,7 @@ cp "$TOOL" bin
 run 0 "without the page of ./dev web" make_site bin/snowglass
 says 'no demo: .*viewer.html is missing'
 check "no menu names a demo" [ -z "$(grep -rl demo.html site)" ]
-echo '<html><script></script>' >share/snowglass/web/viewer.html
+echo '<html><head><script></script>' >share/snowglass/web/viewer.html
 run 0 "with it" make_site bin/snowglass
 prints ', 0 faults$'
 check "a page shows it" grep -q '<iframe src="../demo/engine.html"' site/docs/demo.html

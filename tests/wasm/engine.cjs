@@ -3,7 +3,7 @@
 //   node engine.cjs WORKER ENGINE FOLDER JOBS
 //
 // JOBS is a JSON list of {name, path, files, kept, recipe, turn, threads, narrow, first},
-// whose files are in FOLDER; those that are kept are read by the part, as a page reads a
+// whose files are in FOLDER, or, of one at an address, {name, address, recipe}; those that are kept are read by the part, as a page reads a
 // File; the first picture may be all.  Of each there are then in FOLDER too the pictures
 // NAME-0.bin (draft), NAME-1.bin, NAME-2.bin, as they go to the page, and NAME.json: what
 // was said, the command, the qualities of all pictures, and the processor's milliseconds of each thread.
@@ -15,6 +15,7 @@ const {helpers} = require('./helpers.cjs');
 const [script, engine, folder, jobs] = process.argv.slice(2);
 const worker = require('path').resolve(script);
 const {begin} = require(worker);
+const far = require('./far.cjs');
 
 /** Of the processor, of a thread of this process. */
 const milliseconds = folder =>
@@ -53,11 +54,24 @@ function narrowMemory(how) {
     return new Memory(how);
 }
 
-async function run({name, path, files, kept, recipe, turn, threads = 1, narrow, first}) {
+/** As the page opens an address. */
+async function placeOf(text) {
+    const script = require('path').join(require('path').dirname(worker), 'address.js');
+    const {addressOf} = await import(`data:text/javascript,${encodeURIComponent(fs.readFileSync(script, 'utf8'))}`);
+    return addressOf(text, new URL('file:///viewer.html'));
+}
+
+async function run({name, path, files, kept, recipe, turn, threads = 1, narrow, first, address}) {
     reads = {most: 0, all: 0, count: 0};
     const others = helpers(worker);
     WebAssembly.Memory = narrow ? narrowMemory : Memory;
-    const list = files.map(each => kept ? {name: each, file: new Kept(`${folder}/${each}`)} : {
+    const place = address === undefined ? null : await placeOf(address).catch(({message}) => ({message}));
+    if (place?.message) {
+        fs.writeFileSync(`${folder}/${name}.json`, JSON.stringify({opened: false, said: [place.message]}));
+        return;
+    }
+    path ??= place?.path;
+    const list = place ? [place] : files.map(each => kept ? {name: each, file: new Kept(`${folder}/${each}`)} : {
         name: each, bytes: new Uint8Array(fs.readFileSync(`${folder}/${each}`)).buffer});
     const made = await begin(fs.readFileSync(engine), list, threads, threads > 1 && others.share);
     const folders = ['thread-self', ...await others.folders()], begun = folders.map(milliseconds);
@@ -114,6 +128,7 @@ async function all() {
             throw new Error(`${name} is called, and not in the engine`);
     for (const job of JSON.parse(jobs))
         await run(job);
+    far.end();
 }
 
 all();

@@ -6,12 +6,16 @@ import {ServerEngine as SocketEngine} from './engine_server.js';
 const LEVELS = 4; // serve/message.h
 const PATIENCE = 400; // ms
 
+/** At an address, the path behind it is what option --dataset is elsewhere. */
+const inWordsOfThePage = text => host.volume.address ? text.replace(/with --dataset\b/g, 'by its path behind the address')
+    .replace(/--dataset selects\b/g, 'its path behind the address selects') : text;
+
 export class ServerEngine extends SocketEngine {
     constructor() {
         super('');
         this.flat = true; // it finds no surface: depths are of method raycast
         this.on('said', ({text}) => {
-            this.last = text;
+            this.last = text.split('\n').at(-1);
         });
         for (const name of ['info', 'state'])
             this.on(name, host.opened);
@@ -58,9 +62,23 @@ export class ServerEngine extends SocketEngine {
         this.helpers.push(helper);
     }
 
+    /** How much has come from a server, while a volume is opened and later. */
+    fetched({files, bytes}) {
+        const text = `Reading ${host.volume.path}: ${files} files, ${(bytes / 1e6).toFixed(1)} MB`;
+        clearTimeout(this.reading);
+        if (this.reading)
+            this.inform(host.says, text);
+        else
+            this.tell('said', {text});
+    }
+
     receive(data) {
         if (data.t === 'help') {
             this.help(data);
+            return;
+        }
+        if (data.t === 'fetched') {
+            this.fetched(data);
             return;
         }
         if (this.reading) {
@@ -69,11 +87,11 @@ export class ServerEngine extends SocketEngine {
             this.tell('open');
         }
         if (data.t !== 'refused') {
-            this.hear(data);
+            this.hear(typeof data === 'string' ? inWordsOfThePage(data) : data);
             return;
         }
         const text = data.text || this.last || 'The file cannot be opened.';
-        this.inform(host.refused, text.replace(/; install .*build again$/,
+        this.inform(host.refused, inWordsOfThePage(text).replace(/; install .*build again$/,
             '; snowglass serve shows it, and snowglass export makes a page of it'));
     }
 

@@ -1,7 +1,8 @@
 // shell.js - opens volumes on the page without a server: the one that came with
-// it, a phantom, or files that are dropped or chosen.  page.cmake puts this behind
-// `begin`, which has the modules of the viewer.
+// it, a phantom, files that are dropped or chosen, or those at a URL.  page.cmake puts this
+// behind `begin`, which has the modules of the viewer.
 
+import {addressOf} from './address.js';
 import {readable} from './vti.js';
 
 const body = document.body;
@@ -26,7 +27,17 @@ function bytesOf(script) {
 const engine = new Response(new Blob([bytesOf(from('engine'))]).stream()
     .pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
 
+/** The volumes that came with the page: then it can reach no server (cmd_export.c). */
+const given = [...document.querySelectorAll('script[data-name]')];
+
 let page, stop, shown, takeRecipe, coming, newest;
+let refused = ''; // why the page's address names no volume
+
+function make(tag, properties, ...children) {
+    const element = Object.assign(document.createElement(tag), properties);
+    element.append(...children);
+    return element;
+}
 
 /** Shows a volume in the place of the one before, which stays until the new one is open: a
  * file may be refused. */
@@ -53,12 +64,17 @@ async function show(volume) {
         location,
         /** The volume is open. */
         opened() {
+            if (refused && page === made) {
+                page.page.say(refused, true);
+                refused = '';
+            }
             if (coming !== made)
                 return;
             aside = false;
             stop?.abort();
             page?.engine.close();
             [page, stop, shown, coming, takeRecipe] = [made, stopping, volume, null, take];
+            nameAddress(volume);
             window.snowglass = page; // for the console, and for tests
             from('viewer').replaceWith(main);
             listeners.forEach(listen);
@@ -70,7 +86,7 @@ async function show(volume) {
             return aside;
         },
         refused(text) {
-            const raw = text.includes('--dims') && volume.files[0]?.file;
+            const raw = text.includes('--dims') && (volume.files[0]?.file || volume.address);
             if (aside)
                 made.engine.close();
             if (raw)
@@ -81,8 +97,11 @@ async function show(volume) {
     coming = made;
     made.take = files => showFiles([...files].map(file => ({name: file.name, file})));
     made.file.multiple = true;
-    main.querySelector('[title^="Open a recipe"]').title = 'Open a volume of this machine, or a recipe; ' +
-        'or drop it, a folder of DICOM too, on the page';
+    const chooser = main.querySelector('[title^="Open a recipe"]');
+    chooser.title = 'Open a volume of this machine, or a recipe; or drop it, a folder of DICOM too, on the page';
+    if (!given.length)
+        chooser.after(make('button', {type: 'button', textContent: 'URL', ariaLabel: 'Open from a URL',
+            onclick: askAddress, title: 'Open a volume on a web server: OME-Zarr, or one file'}));
     if (!aside)
         host.opened();
 }
@@ -94,11 +113,6 @@ const TYPES = ['uint8', 'int8', 'uint16', 'int16', 'uint32', 'int32', 'uint64', 
 
 /** Asks what a file without a header does not say, and opens it by that. */
 function askRaw(volume, text) {
-    const make = (tag, properties, ...children) => {
-        const element = Object.assign(document.createElement(tag), properties);
-        element.append(...children);
-        return element;
-    };
     const [, ...fits] = /fits: (\d+)x(\d+)x(\d+) (\w+)/.exec(text) ?? [];
     const old = volume.recipe ?? {};
     const numbers = (name, values, least) => values.map((value, i) => {
@@ -137,6 +151,67 @@ function askRaw(volume, text) {
     dialog.onclose = () => dialog.remove();
     body.append(dialog);
     dialog.showModal();
+}
+
+// --- a web server ----------------------------------------------------------------
+
+/** A volume at an address, as the worker opens it. */
+function volumeAt(text) {
+    const {address, ...place} = addressOf(text, location);
+    return {files: [place], path: place.path, address};
+}
+
+/** Whether a text is the address of a volume. */
+function names(text, address) {
+    try {
+        return text !== null && addressOf(text, location).address === address;
+    } catch {
+        return false;
+    }
+}
+
+/** The page's own address names the volume, unless there is a secret in it. */
+function nameAddress({address}) {
+    const url = new URL(location.href), was = url.searchParams.get('url');
+    if (refused || names(was, address) || (was === null && !address))
+        return;
+    url.searchParams.delete('url');
+    if (address && !new URL(address).search)
+        url.searchParams.set('url', address);
+    try {
+        history.replaceState(null, '', url);
+    } catch { // a page from the disk keeps its own
+    }
+}
+
+/** The field of an address: it stays until one is taken. */
+function askAddress() {
+    const field = make('input', {type: 'text', id: 'address', autofocus: true, spellcheck: false,
+        placeholder: 'https://...', value: shown?.address ?? ''});
+    const wrong = make('p', {id: 'wrong'}), dialog = make('dialog', {});
+    wrong.setAttribute('role', 'alert');
+    field.setAttribute('aria-describedby', 'wrong');
+    const form = make('form', {onsubmit(event) {
+        event.preventDefault();
+        try {
+            const volume = volumeAt(field.value);
+            dialog.close();
+            show(volume);
+        } catch (error) {
+            wrong.textContent = error.message;
+            field.focus();
+        }
+    }}, make('div', {className: 'row'}, make('label', {className: 'name', htmlFor: 'address', textContent: 'Address'}), field),
+    wrong, make('p', {className: 'faint', textContent: 'An image or array of OME-Zarr, of which only what is shown is ' +
+        'fetched, or one file, such as .nii.gz or .nrrd. Its server must allow this page to read it (CORS); cookies and ' +
+        'passwords go to no other server.'}),
+    make('p', {}, make('button', {textContent: 'Open'}), ' ',
+        make('button', {type: 'button', textContent: 'Cancel', onclick: () => dialog.close()})));
+    dialog.append(make('h2', {textContent: 'Open from a URL'}), form);
+    dialog.onclose = () => dialog.remove();
+    body.append(dialog);
+    dialog.showModal();
+    field.select();
 }
 
 // --- files of this machine -----------------------------------------------------
@@ -205,15 +280,22 @@ body.addEventListener('drop', async event => {
 });
 
 /** Another link: files of this machine cannot be loaded again. */
-addEventListener('hashchange', () => shown?.files[0]?.file ? show(shown) : location.reload());
+addEventListener('hashchange', () => shown?.files[0]?.file || shown?.address ? show(shown) : location.reload());
 
 // --- at the beginning ----------------------------------------------------------
 
-const given = [...document.querySelectorAll('script[data-name]')];
+const phantom = {files: [], path: 'phantom:engine'}, wanted = new URLSearchParams(location.search).get('url');
 if (given.length) { // a volume, and what its recipe names
     const [{dataset}] = given;
     show({path: dataset.name, recipe: JSON.parse(dataset.recipe),
         files: given.map(each => ({name: each.dataset.name, bytes: bytesOf(each).buffer}))});
+} else if (wanted === null) {
+    show(phantom);
 } else {
-    show({files: [], path: 'phantom:engine'});
+    try {
+        show(volumeAt(wanted));
+    } catch (error) {
+        refused = error.message;
+        show(phantom);
+    }
 }

@@ -1,11 +1,15 @@
 // worker.js - the engine in a worker: its few functions of a system (host.h), the
 // files that it may read, and the loop that draws while nothing else comes.
 //
-// From the page: {t: 'open', wasm, files: [{name, bytes or file}], path, recipe},
+// From the page: {t: 'open', wasm, files: [{name, bytes or file}], path, recipe}, where
+// the files may be those of a server (remote.js): [{base, query, path}];
 // then {t: 'hear', text} and {t: 'painted'}.  To the page: texts, pictures as
-// ArrayBuffers (serve/message.h), {t: 'refused', text}, and, where pages may share
-// memory, {t: 'help', ...} for each thread: the page hands it to one more worker.
+// ArrayBuffers (serve/message.h), {t: 'refused', text}, {t: 'fetched', files, bytes}, and,
+// where pages may share memory, {t: 'help', ...} for each thread: the page hands it to one
+// more worker.  page.cmake puts remote.js before this.
 'use strict';
+
+const far = typeof module === 'undefined' ? {Remote, FAR} : require('./remote.js');
 
 const UNDER_WAY = 2; // pictures that the page has not painted yet
 const MEMORY = {initial: 256, maximum: 32768}; // as the engine declares it
@@ -13,11 +17,14 @@ const THREADS_MOST = 16;
 const WHOLE = 1 << 20; // bytes of a file that is read at once,
 const AHEAD = 1 << 16; // of a larger one,
 const KEPT = 1 << 28; // and of all that is kept until the volume is open
+const FETCHED_MOST = 1 << 28; // bytes of voxels that are fetched where a coarser level is there
+const SELDOM = 100; // ms between two lines about what is fetched
 
 /** The files by their paths, and what the engine asks of them. */
 class Files {
-    constructor(list) {
+    constructor(list, tell) {
         this.list = list;
+        this.remote = list[0]?.base ? new far.Remote(list[0], tell) : null;
         this.numbers = new Map(list.map(({name}, i) => [name, i]));
         this.reader = typeof FileReaderSync === 'undefined' ? null : new FileReaderSync();
         this.folders = new Map(); // the names in each
@@ -36,12 +43,16 @@ class Files {
     find(path) {
         const name = Files.plain(path);
         const within = `${name}/`;
+        if (this.remote)
+            return this.remote.find(name);
         return this.numbers.get(name) ?? (!name || this.list.some(each => each.name.startsWith(within)) ? -2 : -1);
     }
 
     /** Names in a folder, each once. */
     entries(path) {
         const name = Files.plain(path), begin = name ? `${name}/` : '';
+        if (this.remote)
+            return this.remote.entries(name);
         if (!this.folders.has(name))
             this.folders.set(name, [...new Set(this.list.filter(each => each.name.startsWith(begin))
                 .map(each => each.name.slice(begin.length).split('/')[0]))]);
@@ -49,12 +60,16 @@ class Files {
     }
 
     size(i) {
+        if (i >= far.FAR)
+            return this.remote.size(i);
         return this.list[i].bytes?.byteLength ?? this.list[i].file.size;
     }
 
     /** A browser takes a millisecond for each reading: so more is read than is asked for, of a
      * small file all, as the next reading mostly goes on there. */
     read(i, at, size) {
+        if (i >= far.FAR)
+            return this.remote.read(i, at, size);
         const {bytes, file} = this.list[i];
         if (bytes)
             return new Uint8Array(bytes, at, size);
@@ -90,26 +105,36 @@ function host(of, files) {
         const all = bytes();
         return new TextDecoder().decode(all.slice(at, all.indexOf(0, at)));
     };
+    const put = (words, to, size) => {
+        const encoded = new TextEncoder().encode(words).slice(0, size - 1);
+        bytes().set(encoded, to);
+        bytes()[to + encoded.length] = 0;
+    };
+    /** What `act` returns, or `failed`: why stands in `fault` then. */
+    let fault = '';
+    const tried = (failed, act) => {
+        try {
+            return act();
+        } catch (error) {
+            fault = error.name === 'NotReadableError' || error.name === 'NotFoundError'
+                ? 'it was changed or removed since it was chosen; choose it again' : error.message;
+            return failed;
+        }
+    };
     const env = {
-        host_find: path => files.find(text(path)),
+        host_find: path => tried(-3, () => files.find(text(path))),
         host_size: file => files.size(file),
-        host_read(file, at, to, size) {
-            try {
-                bytes().set(files.read(file, at, size), to);
-                return 1;
-            } catch { // it was changed or removed since it was chosen
-                return 0;
-            }
-        },
-        host_name(folder, index, to, size) {
-            const name = files.entries(text(folder))[index];
-            if (name === undefined)
-                return 0;
-            const encoded = new TextEncoder().encode(name).slice(0, size - 1);
-            bytes().set(encoded, to);
-            bytes()[to + encoded.length] = 0;
+        host_read: (file, at, to, size) => tried(0, () => {
+            bytes().set(files.read(file, at, size), to);
             return 1;
-        },
+        }),
+        host_name: (folder, index, to, size) => tried(-1, () => {
+            const name = files.entries(text(folder))[index];
+            if (name !== undefined)
+                put(name, to, size);
+            return name === undefined ? 0 : 1;
+        }),
+        host_fault: (to, size) => put(fault, to, size),
         emscripten_notify_memory_growth() {},
         getTempRet0: () => of.high ?? 0,
         setTempRet0(value) {
@@ -185,9 +210,9 @@ function shared(list) {
     });
 }
 
-/** The module with a memory, as `exports`. */
-function instance(module, memory, list) {
-    const of = {memory, files: new Files(list)};
+/** The module with a memory, as `exports`.  `tell` hears of what is fetched. */
+function instance(module, memory, list, tell) {
+    const of = {memory, files: new Files(list, tell)};
     const {env, wasi_snapshot_preview1: wasi} = host(of, of.files);
     const imports = {env: {}, wasi_snapshot_preview1: {}};
     for (const {module: from, name, kind} of WebAssembly.Module.imports(module))
@@ -206,12 +231,12 @@ function help({module, memory, files, stack, number}) {
 
 /** The engine with its files open, as functions of texts and bytes.  `share` gets what
  * each thread but this one begins with; without it there are no others. */
-async function begin(wasm, list, threads = 1, share = null) {
+async function begin(wasm, list, threads = 1, share = null, tell = null) {
     const memory = room(share);
     const among = memory.buffer instanceof ArrayBuffer ? null : share;
     const files = among ? shared(list) : list;
     const module = await WebAssembly.compile(among ? wasm : unshared(wasm));
-    const of = instance(module, memory, files);
+    const of = instance(module, memory, files, tell ?? (() => {}));
     of.exports._initialize();
     for (let number = 0; among && number < threads - 1; number++) {
         const stack = of.exports.engine_add_helper();
@@ -230,7 +255,7 @@ async function begin(wasm, list, threads = 1, share = null) {
     return {
         open(path, recipe) {
             const [a] = put(path), [b] = put(JSON.stringify(recipe));
-            const good = of.exports.engine_open(a, b);
+            const good = of.exports.engine_open(a, b, of.files.remote ? FETCHED_MOST : 0);
             of.exports.engine_leave(a);
             of.exports.engine_leave(b);
             of.files.forget();
@@ -286,10 +311,18 @@ function serve(scope) {
         }
     };
     channel.port1.onmessage = work;
+    let told = performance.now();
+    const tell = ({count, fetched}) => {
+        const now = performance.now();
+        if (now - told < SELDOM)
+            return;
+        told = now;
+        scope.postMessage({t: 'fetched', files: count, bytes: fetched});
+    };
     const open = async ({wasm, files, path, recipe}) => {
         try {
             const made = await begin(wasm, files, Math.min(navigator.hardwareConcurrency, THREADS_MOST),
-                scope.crossOriginIsolated && (what => scope.postMessage(what)));
+                scope.crossOriginIsolated && (what => scope.postMessage(what)), tell);
             const good = made.open(path, recipe);
             engine = made;
             deliver();

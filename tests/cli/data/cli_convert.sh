@@ -74,7 +74,7 @@ check "the unit stays" grep -aq '^sample units: mSv$' seg2.nrrd
 printf '7 10 20 30 0.5 1 1 "spleen"\n' >labels.txt
 mkdir -p page/bin page/share/snowglass/web
 cp "$TOOL" page/bin
-echo '<html>' >page/share/snowglass/web/viewer.html
+echo '<html><head>' >page/share/snowglass/web/viewer.html
 run 0 "a page" page/bin/snowglass export page.html seg.nrrd --legend \
     --label-table labels.txt
 check "opens no other file" test "$(grep -c labels.txt page.html)" = 0
