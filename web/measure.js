@@ -370,12 +370,12 @@ export class Measure {
      * @param {Spot} spot
      * @returns {Promise<Place|null>} */
     async surfaceAt([x, y]) {
-        const {pointer} = this, {canvas} = pointer, [width, height] = pointer.box;
+        const {pointer} = this, {canvas, size} = pointer, [width, height] = pointer.box;
         const dx = x - canvas.clientWidth / 2, dy = y - canvas.clientHeight / 2, {keys} = this.store;
         const share = [dx / width + 0.5, dy / height + 0.5];
         if (this.engine.flat || share.some(s => s < 0 || s > 1))
             return null;
-        const {depth} = await this.probe({x: share[0], y: share[1], size: [canvas.width, canvas.height]});
+        const {depth} = await this.probe({x: share[0], y: share[1], size});
         return typeof depth === 'number' ? unproject(keys, this.info, dx + pointer.shift, dy, depth, pointer.side) : null;
     }
 

@@ -45,6 +45,9 @@ export class Pointer {
      * @param {(x: number, y: number) => void} aim */
     constructor(canvas, store, aim) {
         this.canvas = canvas;
+        /** Pixels of the picture, of which the canvas has fewer in a small draft.
+         * @type {Pair} */
+        this.size = [canvas.width, canvas.height];
         this.store = store;
         this.aim = aim;
         /** @type {Map<number, Pair>} */
@@ -69,7 +72,7 @@ export class Pointer {
 
     /** The box in which the picture is drawn: another page may have another window. */
     get box() {
-        const {clientWidth, clientHeight, width, height} = this.canvas;
+        const {canvas: {clientWidth, clientHeight}, size: [width, height]} = this;
         const scale = Math.min(clientWidth / width, clientHeight / height) || 1;
         return [width * scale, height * scale];
     }

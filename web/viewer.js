@@ -215,8 +215,9 @@ function fitWindow(anew = false) {
         store.apply({size});
 }
 
-/** The pixels of a draft: those of this page, unless it was made for the shape of another.
- * @param {import('./types').Frame} frame */
+/** The pixels that a draft stands for: those of this page, unless it was made for the shape of another.
+ * @param {import('./types').Frame} frame
+ * @returns {[number, number]} */
 function enlarged({width, height}) {
     const [across, down] = store.keys.size ?? [width, height];
     return Math.abs(across * height - down * width) <= 2 * Math.max(across, down) ? [across, down]
@@ -228,21 +229,26 @@ engine.on('measured', ms => {
     trip = ms;
 });
 engine.on('picture', frame => {
-    const [width, height] = frame.level ? [frame.width, frame.height] : enlarged(frame);
-    if (canvas.width !== width || canvas.height !== height)
+    const {width, height} = frame;
+    pointer.size = frame.level ? [width, height] : enlarged(frame);
+    const other = canvas.width !== width || canvas.height !== height;
+    if (other)
         [canvas.width, canvas.height] = [width, height];
+    // The browser enlarges a small draft as it puts the page together, which is quicker than a larger canvas.
+    canvas.style.objectFit = `${pointer.size}` === `${[width, height]}` ? '' : 'fill';
     if (frame.level === 2) { // it may have alpha: over black, as those before it
         paint.fillStyle = '#000';
         paint.fillRect(0, 0, width, height);
     }
-    paint.drawImage(known(frame.bitmap), 0, 0, width, height);
+    paint.drawImage(known(frame.bitmap), 0, 0);
     const own = !store.size || `${store.size}` === `${[frame.width, frame.height]}`;
     store.rest = frame.level === 2 && own ? frame.blob : null;
     store.frames++;
-    if (canvas.dataset.level !== '0' || frame.level || store.frames % FEW === 0) {
+    if (other || canvas.dataset.level !== '0' || frame.level || store.frames % FEW === 0) {
         canvas.dataset.level = `${frame.level}`;
-        level.textContent = store.info?.live ? `step ${store.step}` : frame.level < 2 || own ? LEVELS[frame.level]
-            : 'as another page has it';
+        const part = Math.round(pointer.size[0] / width);
+        level.textContent = store.info?.live ? `step ${store.step}` : frame.level < 2 || own
+            ? `${LEVELS[frame.level]}${part > 1 ? `, 1/${part} size` : ''}` : 'as another page has it';
         figures.textContent = `${frame.width} x ${frame.height}, drawn in ${frame.render.toFixed(1)} ms, ` +
             `packed in ${frame.pack.toFixed(1)} ms, ${(frame.bytes / 1024).toFixed(0)} kB, ` +
             `round trip ${trip.toFixed(0)} ms`;
@@ -353,7 +359,8 @@ function returned(touched) {
 }
 
 const slices = new Slices(store, views);
-const pointer = new Pointer(canvas, store, (x, y) => engine.ask('depth', {x, y, size: [canvas.width, canvas.height]}));
+/** @type {Pointer} */
+const pointer = new Pointer(canvas, store, (x, y) => engine.ask('depth', {x, y, size: pointer.size}));
 /** @type {Measure} */
 const measure = new Measure(store, pointer, slices, views, () => actions.measure(measure.tool));
 const times = new Times(store, () => panel.update());

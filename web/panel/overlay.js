@@ -49,14 +49,13 @@ export class Overlay {
 
     /** A picture may have another size than the one before. */
     follow() {
-        const {width, height} = this.pointer.canvas;
-        if (this.size !== `${width} ${height}`)
+        if (this.size !== `${this.pointer.size}`)
             this.draw();
     }
 
     draw() {
-        const {width: across, height: down, clientWidth: width, clientHeight: height} = this.pointer.canvas;
-        this.size = `${across} ${down}`;
+        const {canvas: {clientWidth: width, clientHeight: height}, size} = this.pointer;
+        this.size = `${size}`;
         const {canvas, store: {info}} = this;
         if (!info || !width)
             return;

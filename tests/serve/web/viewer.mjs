@@ -703,6 +703,7 @@ async function together(page) {
         (await keys(page)).azimuth === azimuth && (await keys(page)).view === 'left', JSON.stringify(await keys(page)));
     await other.context().close();
     await sizes(page);
+    await small(page);
 }
 
 /** A page whose window is smaller turns, and each has its own picture in the end. */
@@ -723,6 +724,44 @@ async function sizes(page) {
     await shot(page, 'larger');
     await shot(small, 'smaller');
     await small.context().close();
+}
+
+/** A draft of an eighth of the side fills the picture's box, and the line above says so. */
+async function small(page) {
+    const [width, height] = (await keys(page)).size;
+    const canvas = await page.evaluate(([across, down]) => {
+        const draft = new OffscreenCanvas(across, down), g = draft.getContext('2d');
+        g.fillStyle = '#f00';
+        g.fillRect(0, 0, across, down);
+        g.fillStyle = '#00f';
+        g.fillRect(across / 2, 0, across, down);
+        window.snowglass.engine.tell('picture', {level: 0, width: across, height: down, render: 1, pack: 1,
+            bytes: 1, bitmap: draft.transferToImageBitmap()});
+        const {width, height} = document.querySelector('.picture canvas');
+        return [width, height, ...window.snowglass.overlay.pointer.size];
+    }, [width >> 3, height >> 3]);
+    check('a small draft has a canvas of its size, and stands for the picture',
+        String(canvas) === String([width >> 3, height >> 3, width, height]), `${canvas} of ${width},${height}`);
+    const said = await page.locator('.level').textContent();
+    check('which is said', said === 'draft, 1/8 size', said);
+    const shown = await pixels(page, await page.locator('.picture canvas').first().screenshot(),
+        [0, width / 2 - 5, width / 2 + 5, width - 1].map(x => [Math.floor(x), height >> 1]));
+    check('it is enlarged to all of the box', String(shown) === '255,0,0,255,0,0,0,0,255,0,0,255', String(shown));
+    await press(page, 'ArrowRight');
+    check('the picture at rest has all its pixels', String(await page.evaluate(() => {
+        const {width, height} = document.querySelector('.picture canvas');
+        return [width, height];
+    })) === String([width, height]));
+}
+
+/** Red, green and blue of some pixels of a screenshot. */
+function pixels(page, png, places) {
+    return page.evaluate(async ([bytes, places]) => {
+        const image = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), c => c.charCodeAt(0))]));
+        const g = new OffscreenCanvas(image.width, image.height).getContext('2d', {willReadFrequently: true});
+        g.drawImage(image, 0, 0);
+        return places.flatMap(([x, y]) => [...g.getImageData(x, y, 1, 1).data].slice(0, 3));
+    }, [png.toString('base64'), places]);
 }
 
 async function touch() {
