@@ -221,6 +221,7 @@ export class Measure {
         views.addEventListener('pointerdown', event => this.down(event), true);
         views.addEventListener('pointermove', event => this.move(event), true);
         views.addEventListener('pointerup', event => this.up(event), true);
+        views.addEventListener('pointercancel', () => this.cancel(), true);
         views.addEventListener('pointerout', () => this.tell(null), true);
         document.addEventListener('keydown', event => this.key(event), true);
     }
@@ -480,6 +481,15 @@ export class Measure {
             event.stopPropagation();
         else if (!event.buttons && event.pointerType === 'mouse')
             this.rest(pane, this.spot(event));
+    }
+
+    /** The browser took the pointer away: all is as it was before. */
+    cancel() {
+        this.held = this.pressed = null;
+        if (this.pending)
+            this.pending.dragged = false;
+        this.text = this.asked = '';
+        this.update();
     }
 
     /** @param {PointerEvent} event */

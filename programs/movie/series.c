@@ -281,6 +281,12 @@ int series_take(options *opts, const verb_row *verb) {
                                   "give the number of a step")
                      : CONTINUE;
     int done = join_set(opts);
+    if (done == CONTINUE && is_movie && timed &&
+        files_are_meant(opts->operands[0]))
+        return fail_usage("--time: of several files movie takes steps by their "
+                          "numbers, such as 2:8; snowglass info '%s' with "
+                          "this --time says which step that is",
+                          opts->operands[0]);
     const bool files = !is_movie && files_are_meant(opts->operands[0]);
     if (done != CONTINUE || (!files && !timed))
         return done;

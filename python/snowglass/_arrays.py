@@ -256,7 +256,7 @@ def _of_xarray(source: Any, spacing: Any, axes: Optional[str],
     if spacing is None and affine is None and len(names) == 3:
         affine, found = _place_of(source, dict(zip(axes, names)))
         unit = unit or found
-    for name in names[:-2]:
+    for name in names[:-2] if len(names) == 3 else ():
         if source.sizes[name] > 1 and (
                 name == "time" or source[name].dtype.kind in "mM"):
             warn(f"dimension '{name}' is drawn as a direction of space: "

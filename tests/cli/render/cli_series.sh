@@ -80,6 +80,8 @@ for time in x 1: 0.5q1 1:2:3 -; do
     [ $time = 1: ] || refused 2 "no time: $time" 'is not a time step' \
         "$TOOL" info steps.visit --time $time
 done
+refused 2 "a movie of a time of files" 'movie takes steps by their numbers' \
+    "$TOOL" movie 'run_%04d.nrrd' --time 0.5 -o no_%d.png
 refused 2 "a range" 'a range of them is for movie' "$TOOL" info steps.visit --time 0:2
 
 # Movies of some steps; gaps in a pattern are errors.
