@@ -140,6 +140,21 @@ install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
 # --- and away -----------------------------------------------------------------
 
 if(PROJECT_SOURCE_DIR STREQUAL CMAKE_SOURCE_DIR)
+  # CMake's lists do not tell DESTDIR, below which their files may be.
+  foreach(part runtime dev mpi python doc)
+    install(CODE [[
+      set(list install_manifest)
+      if(CMAKE_INSTALL_COMPONENT)
+        string(APPEND list _${CMAKE_INSTALL_COMPONENT})
+      endif()
+      set(root "")
+      if(NOT "$ENV{DESTDIR}" STREQUAL "")
+        get_filename_component(root "$ENV{DESTDIR}" ABSOLUTE)
+      endif()
+      file(WRITE "${CMAKE_CURRENT_LIST_DIR}/${list}.txt.root"
+           "<${root}>\n${CMAKE_INSTALL_PREFIX}\n")
+    ]] COMPONENT snowglass_${part})
+  endforeach()
   add_custom_target(uninstall COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR}
                     -P ${PROJECT_SOURCE_DIR}/cmake/uninstall.cmake)
 endif()
