@@ -1,5 +1,5 @@
 # A recipe for Spack.  In a repository of recipes it lies at
-# packages/snowglass/package.py; `spack repo add FOLDER` makes it known.
+# packages/snowglass/package.py, beside repo.yaml; docs/install.md has the steps.
 from spack.package import *
 
 
