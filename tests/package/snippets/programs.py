@@ -42,6 +42,11 @@ def c(snippet, folder):
         return call("mpicc program.c -o program $(pkg-config --cflags --libs "
                     "snowglass-mpi) && rm -f u_*.png && mpirun -n 1 ./program && "
                     "[ -s u_0007.png ]", folder)
+    if "snow_frame_render_bytes" in snippet.text:
+        (folder / "program.c").write_text(framed("loop.c", snippet.text))
+        return call("cc -std=c11 -Wall -Werror -Wno-misleading-indentation program.c "
+                    "-o program $(pkg-config --cflags --libs snowglass) && ./program",
+                    folder)
     name = "streamed.c" if "streamed" in snippet.text else "picture.c"
     (folder / "program.c").write_text(framed(name, snippet.text))
     return call("cc -std=c11 -Wall -Werror -Wno-misleading-indentation program.c "

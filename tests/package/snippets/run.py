@@ -40,8 +40,12 @@ REASONS = [
     (r".*", r"pip install [.]", "needs scikit-build-core"),
     (r".*", r"mpirun\.mpich", "needs MPICH; the package is of Open MPI"),
     (r"dicom\.md", r"SUV = ", "a formula"),
-    (r"(install|python)\.md", r"--target uninstall|apt-get install", "removes or installs packages"),
-    (r"movies\.md", r".*--as rgb24.*\|$", "a pipe of two lines, which tests of movies run"),
+    (r"(install|python)\.md", r".*(--target uninstall|apt-get install)",
+     "removes or installs packages"),
+    (r"install\.md", r"umask 022\n", "installs as an administrator"),
+    (r"install\.md", r"local root = ", "needs environment modules"),
+    (r"install\.md", r"mkdir -p recipes/", "needs Spack"),
+    (r"movies\.md", r".*--as rgb24.*\|\n", "a pipe of two lines, which tests of movies run"),
     (r"looks\.md", r"light-grey 173", "what the tool prints"),
     (r"usage\.md", r"\(0008,0060\)", "what the tool prints"),
     (r"README\.md", r"\s*(SD|base|head\.nrrd)\s", "a figure"),
@@ -86,7 +90,14 @@ def kind_of(snippet):
     return shells.run if shells.knows(snippet) else None
 
 
+def needs_volumes(snippet):
+    """Whether it names real volumes, of which there are none."""
+    return not shells.DATA and re.search(r"\$DATA/|--data FOLDER", snippet.text)
+
+
 def reason_of(snippet):
+    if needs_volumes(snippet):
+        return "needs real volumes: SNOW_DATA names no folder of them"
     document = snippet.place.split(":")[0].rpartition("/")[2]
     for place, text, reason in REASONS:
         if re.fullmatch(place, document) and re.match(text, snippet.text):

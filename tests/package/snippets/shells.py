@@ -62,6 +62,9 @@ def prepare(files):
                           ("volume", "head")):
         subprocess.run(["snowglass", "phantom", phantom, "--dims", "32x32x32",
                         "-q", "-o", files / f"{name}.nrrd"], check=True)
+    (files / "study").mkdir()
+    subprocess.run(["cp", files / "run.nrrd", files / "volume.nrrd", files / "study"],
+                   check=True)
     (files / "bin").mkdir()
     (files / "bin" / "srun").write_text(SRUN)
     (files / "bin" / "srun").chmod(0o755)
