@@ -69,9 +69,16 @@ static void put_volume(messages *m, const options *opts, const char *path) {
     snow_context_free(context);
 }
 
+/* A volume that is computed has no file. */
+static bool is_phantom(const char *path) {
+    return strncmp(path, "phantom:", 8) == 0;
+}
+
 static void put_structure(FILE *out, const source *from, const char *path) {
     fprintf(out, "\nstructure\n");
-    if (from->file < 0)
+    if (is_phantom(path))
+        fprintf(out, "a phantom, which has no file\n");
+    else if (from->file < 0)
         report_folder(out, path);
     else {
         fprintf(out, "%llu bytes%s\n", (unsigned long long)from->size,
@@ -83,10 +90,10 @@ static void put_structure(FILE *out, const source *from, const char *path) {
     }
 }
 
-/* Opens what a report is made of; a folder has no bytes. */
+/* Opens what a report is made of; a folder or a phantom has no bytes. */
 static int open_source(const char *path, source *out) {
     *out = (source){.file = -1};
-    if (is_folder(path) || source_open(path, out))
+    if (is_phantom(path) || is_folder(path) || source_open(path, out))
         return CONTINUE;
     return fail_with(SNOW_STATUS_BAD_INPUT,
                      "%s: cannot be read: %s; check the "

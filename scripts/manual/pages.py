@@ -16,6 +16,10 @@ STATUSES = {
     130: "interrupted by SIGINT (Ctrl-C), SIGTERM or SIGHUP; no file is left "
          "unfinished, and a movie keeps its finished frames for --resume"}
 
+# What options mean for a verb whose output is neither a picture nor a volume.
+OF_VERB = {("report", "output"): "text file that the report is written to, after it "
+                                 "is shown"}
+
 
 # --- parts of pages -----------------------------------------------------------
 
@@ -78,8 +82,9 @@ def verb_page(table, verb):
                         "prints."))
     else:
         out += [text(f"Verb of the tool: {verb['text']}."), ".SH OPTIONS"]
-        options = [option for option in table["options"]
-                   if verb["name"] in option["verbs"]]
+        options = [option | {"text": OF_VERB.get((verb["name"], option["name"]),
+                                                 option["text"])}
+                   for option in table["options"] if verb["name"] in option["verbs"]]
         for topic in table["topics"]:
             out += topic_items(topic, options)
     if verb["name"] == "phantom":

@@ -41,6 +41,8 @@ for topic in $(words_of topics); do
     done
 done
 check "all is in pages and completions${lacking:+, not$lacking}" [ -z "$lacking" ]
+check "the page of report has its own output" grep -q "text file that the report" \
+    "$(page -report)"
 check "pages have options" [ "$(paged "$(page -render)" | wc -l)" -gt 60 ]
 
 # --- manual pages -------------------------------------------------------------

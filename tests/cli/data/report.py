@@ -283,6 +283,9 @@ oracle.checked += 1
 if oracle.got("kept.txt").decode() != "\n".join(shown):
     oracle.fail("-o", "the file is not what was shown")
 has(report(path("nrrd"), "-y", "-o", "kept.txt"), "structure")
+has(report("phantom:head", "--dims", "8x8x8"), "a phantom, which has no file",
+    r'.*"dims": \[8, 8, 8\].*')
+has(report("phantom:quzzle"), "error [0-9]: .*")
 done = oracle.tool("report", "absent.nii")
 oracle.checked += 1
 if done.returncode != 3 or "absent.nii" not in done.stderr:
