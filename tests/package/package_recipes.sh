@@ -152,6 +152,21 @@ check "libraries that files need are found" grep -q 'NEEDED.*libsnowglass[.]so' 
 needs_no_mpi() { ! grep -E 'NEEDED.*\[lib(snowglass-)?mpi' needed; }
 check "packages that are not of MPI do not need it" needs_no_mpi
 
+# Python is told what pyproject.toml says of a package for pip.
+info=$(find usr -name 'snowglass-*.dist-info')
+if [ -n "$info" ] && [ -n "$python" ]; then
+    PYTHONPATH=${info%/*} run 0 "importlib.metadata knows it" "$python" -B -c '
+import importlib.metadata, sys, tomllib
+found = importlib.metadata.metadata("snowglass")
+with open(sys.argv[1], "rb") as file:
+    project = tomllib.load(file)["project"]
+assert found["Summary"] == project["description"]
+assert found["Requires-Python"] == project["requires-python"]
+assert found.get_all("Requires-Dist") == project["dependencies"]
+print(found["Version"])' "$3/pyproject.toml"
+    prints "^$version$"
+fi
+
 for package in $(sed -n 's/^Package: //p' "$PACKAGING/debian/control"); do
     [ -e "$PACKAGING/debian/$package.install" ] || fail "$package has no list"
 done
