@@ -167,6 +167,21 @@ print(found["Version"])' "$3/pyproject.toml"
     prints "^$version$"
 fi
 
+# A page that is sent away has the notices of all code in it.
+page=usr/share/snowglass/web/viewer.html
+if [ -e $page ]; then
+    "$TOOL" phantom head --dims 8x8x8 -q -o head.nrrd
+    run 0 "a page" usr/bin/snowglass export page.html head.nrrd
+    lacking=
+    for words in 'the Snowglass developers' 'Redistribution and use in source' \
+        'Petri Lehtinen' 'Permission is hereby granted, free of charge' 'Cosmin Truta' \
+        'Jean-loup Gailly' 'Rich Felker' 'the Emscripten Authors' 'Google LLC' 'Cynthia Brewer' \
+        'Francesc Alted' 'Yann Collet' 'Meta Platforms'; do
+        [ "$(grep -cF "$words" page.html)" -ge 1 ] || lacking+=" '$words'"
+    done
+    check "it names whose code it has${lacking:+, but not$lacking}" [ -z "$lacking" ]
+fi
+
 for package in $(sed -n 's/^Package: //p' "$PACKAGING/debian/control"); do
     [ -e "$PACKAGING/debian/$package.install" ] || fail "$package has no list"
 done
