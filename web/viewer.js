@@ -247,8 +247,9 @@ engine.on('picture', frame => {
     if (other || canvas.dataset.level !== '0' || frame.level || store.frames % FEW === 0) {
         canvas.dataset.level = `${frame.level}`;
         const part = Math.round(pointer.size[0] / width);
+        const share = part > 1 ? `, 1/${part} size` : '';
         level.textContent = store.info?.live ? `step ${store.step}` : frame.level < 2 || own
-            ? `${LEVELS[frame.level]}${part > 1 ? `, 1/${part} size` : ''}` : 'as another page has it';
+            ? LEVELS[frame.level] + share : 'as another page has it';
         figures.textContent = `${frame.width} x ${frame.height}, drawn in ${frame.render.toFixed(1)} ms, ` +
             `packed in ${frame.pack.toFixed(1)} ms, ${(frame.bytes / 1024).toFixed(0)} kB, ` +
             `round trip ${trip.toFixed(0)} ms`;
