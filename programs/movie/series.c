@@ -81,7 +81,7 @@ static int wanted_time(const step_times *times, double *out) {
         return snow_time_value(&times->at, opts->date, out)
                    ? CONTINUE
                    : fail_usage(
-                         "--time: %s is no date of the input, whose "
+                         "--time: %s is not a date of the input, whose "
                          "times are in \"%s\"%s%s%s; give a date such as "
                          "2005-08-28 06:00, or the number of a step",
                          opts->date, unit,

@@ -193,7 +193,8 @@ static bool has_small_letters(const option_row *row, const char *text) {
         read_choice, read_size,  read_dims,   read_spacing,
         read_range,  read_scale, read_kernel, read_combine};
     if (row->read == read_component)
-        return strlen(text) == 1 || strcasecmp(text, "magnitude") == 0;
+        return strcasecmp(text, "magnitude") == 0 ||
+               (strlen(text) == 1 && strchr("WXYZ", *text)); /* not names: U */
     for (size_t i = 0; i < sizeof readers / sizeof *readers; i++)
         if (row->read == readers[i])
             return true;

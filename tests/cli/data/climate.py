@@ -77,7 +77,7 @@ for date, step in ("2000-01-01", 0), ("2000-01-01 05:00", 1), ("2000-01-02T00:00
     when = netCDF4.num2date(6 * step, "hours since 2000-01-01")
     check(f"{date} is step {step}", f"step {step})" in told and f": {when}" in told, told)
 _, told = run("info", "cloud.nc", "--time", "2000-02-30")
-check("a day that is none", "is no date of the input" in told, told)
+check("a day that is none", "is not a date of the input" in told, told)
 for at in "150km", "150000m":
     _, told = run("slice", "cloud.nc", "--axis", "z", "--at", at, "-o", "s.png", "-y")
     check(f"--at {at}", "50 of" in told, told)
@@ -99,6 +99,9 @@ for names in "/run/Fields/U,/run/Fields/V,/run/Fields/W", "U,V,W", "Fields/U,Fie
     length = np.sqrt(sum(np.float64(values) ** 2 for values in parts.values()))
     check(f"--component {names}", len(found) > 1 and np.allclose(
         found[:2], [length.min(), length.max()], rtol=1e-5), told)
+status, told = run("info", "winds.nc", "--component", "U")
+check("a name of one letter keeps it", "component U:" in told and "component u:" not in told,
+      told)
 told = run("info", "winds.nc", "--dataset", "u")[1]
 check("of another case is no name", "there is no such data set" in told, told)
 with netCDF4.Dataset("winds.nc", "a") as f:

@@ -74,7 +74,7 @@ prints '^time +0.1$'
 says 'step 1 of 3 is the nearest, at 0.1'
 printed "with a unit, which the list lacks" 'step 2' "$TOOL" info steps.visit --time 9.9s
 refused 2 "without times" 'has no physical times' "$TOOL" info run_0000.nrrd --time 0.5
-refused 2 "a date of a list that has none" "2005-08-28 is no date of the input" \
+refused 2 "a date of a list that has none" "2005-08-28 is not a date of the input" \
     "$TOOL" info steps.visit --time 2005-08-28
 for time in x 1: 0.5q1 1:2:3 -; do
     [ $time = 1: ] || refused 2 "no time: $time" 'is not a time step' \
