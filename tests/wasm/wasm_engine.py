@@ -13,24 +13,13 @@ import zlib
 TOOL, OUT, TOP = map(os.path.abspath, sys.argv[1:4])
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
+from checks import check, end, skip  # noqa: E402
 from dicom_slice import dicom  # noqa: E402
 from png import levels  # noqa: E402
 
 ENGINE = os.path.join(TOP, "build-web", "engine.wasm")
 QUALITIES = "draft", "normal", "high"
 RAW, PNG = 4, 2
-wrong = 0
-
-
-def check(name, good, why=""):
-    global wrong
-    print(f"ok     {name}" if good else f"FAILED {name}: {why}")
-    wrong += not good
-
-
-def skip(why):
-    print("skip  ", why)
-    sys.exit(77)
 
 
 @functools.lru_cache(maxsize=None)  # with threads it is the same command
@@ -245,5 +234,4 @@ check("a turn does not wait for the picture at rest", levels_ == [0, 1, 0, 1, 2]
 compare("turned")
 for name, _, words in strangers:
     refused(name, *words)
-if wrong:
-    sys.exit(f"{wrong} checks failed")
+end()

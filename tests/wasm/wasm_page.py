@@ -16,27 +16,12 @@ import zlib
 TOOL, OUT, TOP = map(os.path.abspath, sys.argv[1:4])
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
+from checks import check, end, find, skip  # noqa: E402
 from dicom_slice import dicom  # noqa: E402
 
 PLAYWRIGHT = os.path.join(os.path.dirname(TOOL), "web", "node_modules",
                           "playwright-core", "index.mjs")
 PAGE = os.path.join(TOP, "build-web", "viewer.html")
-wrong = 0
-
-
-def check(name, good, why=""):
-    global wrong
-    print(f"ok     {name}" if good else f"FAILED {name}: {why}")
-    wrong += not good
-
-
-def skip(why):
-    print("skip  ", why)
-    sys.exit(77)
-
-
-def find(*names):
-    return next(filter(None, map(shutil.which, names)), None)
 
 
 node, chromium = find("node", "nodejs"), find("chromium", "chromium-browser")
@@ -175,5 +160,4 @@ check("what is too large is refused with what to do",
       large.returncode == 5 and "1648 MiB" in large.stderr and
       "at most 1024" in large.stderr and "--crop" in large.stderr and
       not os.path.exists(os.path.join(OUT, "large.html")), large)
-if wrong:
-    sys.exit(f"{wrong} checks failed")
+end()

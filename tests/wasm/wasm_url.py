@@ -17,6 +17,7 @@ import urllib.parse
 TOOL, OUT, TOP = map(os.path.abspath, sys.argv[1:4])
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(TOP, "tests", "support"))
+from checks import check, end, find, skip  # noqa: E402
 from png import levels  # noqa: E402
 
 PLAYWRIGHT = os.path.join(os.path.dirname(TOOL), "web", "node_modules", "playwright-core",
@@ -24,22 +25,6 @@ PLAYWRIGHT = os.path.join(os.path.dirname(TOOL), "web", "node_modules", "playwri
 PAGE = os.path.join(TOP, "build-web", "viewer.html")
 ENGINE = os.path.join(TOP, "build-web", "engine.wasm")
 STORES = os.path.join(OUT, "stores")
-wrong = 0
-
-
-def check(name, good, why=""):
-    global wrong
-    print(f"ok     {name}" if good else f"FAILED {name}: {why}")
-    wrong += not good
-
-
-def skip(why):
-    print("skip  ", why)
-    sys.exit(77)
-
-
-def find(*names):
-    return next(filter(None, map(shutil.which, names)), None)
 
 
 node, chromium = find("node", "nodejs"), find("chromium", "chromium-browser")
@@ -321,7 +306,8 @@ check("a secret of an address is in no line", "secret" not in str(told) and
 # --- the page, in Chromium -----------------------------------------------------------
 
 if not chromium or not os.path.exists(PLAYWRIGHT):
-    skip("chromium or playwright-core is missing") if not wrong else sys.exit(f"{wrong} checks failed")
+    end()
+    skip("chromium or playwright-core is missing")
 asked.clear()
 TYPED = ("nocors", "broken", "ftp")
 PAGES = [
@@ -373,5 +359,4 @@ check("the server heard nothing of it", not any("told" in each[1] for each in as
 check("it has no field, and takes no address", not exported["field"] and
       exported["shown"] == "volume", exported)
 server.shutdown()
-if wrong:
-    sys.exit(f"{wrong} checks failed")
+end()
