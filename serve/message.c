@@ -161,6 +161,9 @@ static const char *read_moving(message *m) {
 }
 
 static const char *read_ack(message *m) {
+    const bool timed = json_object_get(m->tree, "took") != NULL;
+    if (timed && !read_number(m->tree, "took", &m->took))
+        return "ack: took is not in whole milliseconds";
     return read_number(m->tree, "n", &m->n) ? NULL : "ack: needs a number n";
 }
 

@@ -4,7 +4,7 @@
  *   {"t": "hello", "token": "...", "wants": ["jpeg", "webp", "png"]}
  *   {"t": "set", "step": 17, "keys": {"azimuth": 30, "preset": null}}
  *   {"t": "moving", "on": true}
- *   {"t": "ack", "n": 17}
+ *   {"t": "ack", "n": 17, "took": 12}
  *   {"t": "part"}
  *   {"t": "ask", "what": "histogram", ...}
  *
@@ -34,6 +34,8 @@ typedef enum message_kind {
 typedef struct message {
     message_kind kind;
     uint32_t n;         /* the step of set, or n of ack */
+    uint32_t took;      /* of ack: milliseconds from when the picture was there
+                           until it was painted; 0: not said */
     bool on;            /* of moving */
     bool webp;          /* of hello: the page can show WebP */
     const char *token;  /* of hello */

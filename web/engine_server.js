@@ -141,9 +141,9 @@ export class ServerEngine {
             this.tell(message.t, message.t === 'state' ? this.renewed(message) : message);
             return;
         }
-        const whole = this.whole(data);
+        const whole = this.whole(data), came = performance.now();
         if (whole)
-            this.painting = this.painting.then(() => this.paint(whole)).catch(
+            this.painting = this.painting.then(() => this.paint(whole, came)).catch(
                 error => this.tell('said', {text: `A picture cannot be shown: ${error.message}`}));
     }
 
@@ -188,8 +188,9 @@ export class ServerEngine {
                 this.unheard.delete(key);
     }
 
-    /** @param {ArrayBuffer} data */
-    async paint(data) {
+    /** @param {ArrayBuffer} data
+     * @param {number} came */
+    async paint(data, came) {
         const [magic, n, , , width, height, render, pack] = new Uint32Array(data, 0, 8);
         const [level, kind, pane] = new Uint8Array(data, 8);
         if (magic !== MAGIC) // as machines have it that browsers are on: little endian
@@ -207,7 +208,7 @@ export class ServerEngine {
             this.tell('picture', frame);
             bitmap.close();
         } finally { // the server waits for it
-            this.say({t: 'ack', n});
+            this.say({t: 'ack', n, took: Math.round(performance.now() - came)});
             this.measure(n);
         }
     }

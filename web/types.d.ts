@@ -34,7 +34,7 @@ export type Said =
     | {t: 'hello', token: string, wants: string[]}
     | {t: 'set', step: number, keys: Changes}
     | {t: 'moving', on: boolean}
-    | {t: 'ack', n: number}
+    | {t: 'ack', n: number, took: number}
     | {t: 'part'}
     | {t: 'ask', what: string, [more: string]: unknown};
 

@@ -126,9 +126,11 @@ static int step_after(const client *c, size_t length) {
     return c->trip < steps[now].quick && short_one ? c->step + 1 : c->step;
 }
 
-static void note_trip(client *c, const sent_picture *sent) {
+static void note_trip(client *c, const sent_picture *sent, double took) {
     double seconds = 1e-6 * (double)(lws_now_usecs() - sent->at);
-    c->trip += (c->trip > 0 ? 0.2 : 1) * (seconds - c->trip);
+    double share = c->trip > 0 ? 0.2 : 1;
+    c->trip += share * (seconds - c->trip);
+    c->painted += share * (took - c->painted);
     if (++c->trips < TRIPS_LEAST)
         return;
     int step = step_after(c, sent->length);
@@ -149,7 +151,7 @@ static void note_sent(client *c, const outgoing *p) {
                        .counts = !at_rest && !waits};
 }
 
-static void note_painted(client *c) {
+static void note_painted(client *c, double took) {
     if (c->under_way == 0)
         return;
     sent_picture oldest = c->sent_pictures[0];
@@ -157,18 +159,19 @@ static void note_painted(client *c) {
     memmove(c->sent_pictures, c->sent_pictures + 1,
             (size_t)c->under_way * sizeof *c->sent_pictures);
     if (oldest.counts)
-        note_trip(c, &oldest);
+        note_trip(c, &oldest, took);
 }
 
 /* A link is thin where most pictures wait until another has arrived, and no
- * more when hardly any does. */
-bool client_acknowledge(client *c) {
+ * more when hardly any does.  A page that is itself slow, as on a busy machine,
+ * has no thin link: WebP would keep it and the viewer busier still. */
+bool client_acknowledge(client *c, double took) {
     bool thin = c->thin;
     int quality = client_quality(c);
-    note_painted(c);
-    int waits = 0; /* 1: a picture does */
+    note_painted(c, took);
+    int waits = 0; /* 1: a picture does, for the link */
     for (int i = 0; i < c->count; i++)
-        waits |= is_picture(c->queue[i]);
+        waits |= is_picture(c->queue[i]) && c->trip >= 2 * c->painted;
     c->blocked += 0.2 * (waits - c->blocked);
     c->thin = c->webp && c->blocked > (c->thin ? 0.02 : 0.6);
     return c->thin != thin || client_quality(c) != quality;

@@ -52,7 +52,8 @@ typedef struct client {
     double blocked; /* the share of them, of late */
     int under_way;  /* pictures that were sent and not acknowledged: */
     sent_picture sent_pictures[CLIENT_UNDER_WAY]; /* the oldest first */
-    double trip;    /* seconds from a picture to its acknowledgement, of late */
+    double trip;    /* seconds from a picture to its acknowledgement, of late: */
+    double painted; /* and of these the page's own, once it had the picture */
     int step;       /* of quality, from that which all begin with */
     int trips;      /* that were measured since it changed */
     page_size size; /* of the page's picture; 0: not said */
@@ -66,9 +67,9 @@ void client_free(client *c, outbox *box);
 /* Queues a message, which it shares. */
 void client_queue(client *c, outbox *box, outgoing *p);
 
-/* A picture was painted.  Whether pictures are to be packed in another way
- * for this page from now on. */
-bool client_acknowledge(client *c);
+/* A picture was painted, `took` seconds after it had come.  Whether pictures
+ * are to be packed in another way for this page from now on. */
+bool client_acknowledge(client *c, double took);
 
 /* A part has come. */
 void client_note_part(client *c);

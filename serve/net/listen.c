@@ -222,7 +222,7 @@ static int take(listener *l, client *c, message *m) {
         break;
     }
     case MESSAGE_ACK:
-        if (client_acknowledge(c))
+        if (client_acknowledge(c, 1e-3 * m->took))
             count_links(l);
         break;
     case MESSAGE_PART:

@@ -61,7 +61,7 @@ static int quality_after(client *c, int pictures, size_t length, int ms) {
         queue_long(c, box, MESSAGE_PICTURE, 0, length);
         send_all(c, box);
         now += 1000 * ms;
-        client_acknowledge(c);
+        client_acknowledge(c, 0);
     }
     outbox_free(box);
     return client_quality(c);
@@ -120,14 +120,14 @@ static void pictures_at_rest_do_not_count(void **state) {
         queue(&c, box, MESSAGE_PICTURE, 0);
         send_all(&c, box);
         now += 900000;
-        client_acknowledge(&c);
+        client_acknowledge(&c, 0);
         queue(&c, box, MESSAGE_PICTURE,
               0); /* counts, behind one that does not */
         send_all(&c, box);
-        client_acknowledge(&c);
+        client_acknowledge(&c, 0);
         now += 60000;
-        client_acknowledge(&c);
-        client_acknowledge(&c); /* of nothing */
+        client_acknowledge(&c, 0);
+        client_acknowledge(&c, 0); /* of nothing */
     }
     assert_int_equal(client_quality(&c), 75);
     assert_true(c.trip > 0.059 && c.trip < 0.061);
@@ -145,7 +145,7 @@ static void a_change_of_quality_is_told(void **state) {
         queue(&c, box, MESSAGE_PICTURE, 0);
         send_all(&c, box);
         now += 400000;
-        assert_int_equal(client_acknowledge(&c), i % 8 == 0);
+        assert_int_equal(client_acknowledge(&c, 0), i % 8 == 0);
     }
     outbox_free(box);
 }
@@ -237,13 +237,13 @@ static void two_pictures_are_under_way(void **state) {
     assert_true(client_send(&c, box));
     assert_int_equal(written.count, before + 1);
     assert_int_equal(c.under_way, CLIENT_UNDER_WAY);
-    client_acknowledge(&c);
+    client_acknowledge(&c, 0);
     assert_true(client_has_more(&c));
     assert_true(client_send(&c, box));
     assert_int_equal(written.head[8], 1); /* the newer one */
     assert_int_equal(c.under_way, CLIENT_UNDER_WAY);
     for (int i = 0; i < 5; i++)
-        client_acknowledge(&c);
+        client_acknowledge(&c, 0);
     assert_int_equal(c.under_way, 0);
     client_free(&c, box);
     outbox_free(box);
@@ -274,7 +274,7 @@ the_picture_at_rest_goes_in_parts_that_can_be_dropped(void **state) {
     }
     assert_int_equal(written.count, before + 6 + 1); /* the state behind it */
     assert_int_equal(c.under_way, 1);
-    client_acknowledge(&c);
+    client_acknowledge(&c, 0);
     for (int i = 0; i < 9; i++)
         client_note_part(&c);
 
@@ -332,17 +332,44 @@ static void a_link_is_thin_while_pictures_wait(void **state) {
     for (int i = 0; i < 10; i++) {
         queue(&c, box, c.thin ? MESSAGE_THIN_PICTURE : MESSAGE_PICTURE, 0);
         queue(&plain, box, MESSAGE_PICTURE, 0);
-        changes += client_acknowledge(&c);
-        assert_false(client_acknowledge(&plain)); /* it cannot show WebP */
+        changes += client_acknowledge(&c, 0);
+        assert_false(client_acknowledge(&plain, 0)); /* it cannot show WebP */
     }
     assert_true(c.thin);
     send_all(&c, box);
     for (int i = 0; i < 40; i++)
-        changes += client_acknowledge(&c);
+        changes += client_acknowledge(&c, 0);
     assert_false(c.thin);
     assert_int_equal(changes, 2);
     client_free(&c, box);
     client_free(&plain, box);
+    outbox_free(box);
+}
+
+/* Trips of 60 ms, of which the page takes so many to paint; another picture
+ * waits at the end of each. */
+static void make_trips(client *c, outbox *box, int painted) {
+    for (int i = 0; i < 40; i++) {
+        message_topic topic = c->thin ? MESSAGE_THIN_PICTURE : MESSAGE_PICTURE;
+        queue(c, box, topic, 0);
+        send_all(c, box);
+        now += 60000;
+        queue(c, box, topic, 0);
+        client_acknowledge(c, 1e-3 * painted);
+    }
+}
+
+static void a_slow_page_has_no_thin_link(void **state) {
+    (void)state;
+    outbox *box = outbox_new(wake_nobody, NULL);
+    client c = {.id = 1, .webp = true};
+    make_trips(&c, box, 40);
+    assert_false(c.thin);
+    make_trips(&c, box, 10);
+    assert_true(c.thin);
+    make_trips(&c, box, 40);
+    assert_false(c.thin);
+    client_free(&c, box);
     outbox_free(box);
 }
 
@@ -387,6 +414,7 @@ int main(void) {
         cmocka_unit_test(the_picture_at_rest_goes_in_parts_that_can_be_dropped),
         cmocka_unit_test(a_picture_goes_in_pieces_with_the_own_n),
         cmocka_unit_test(a_link_is_thin_while_pictures_wait),
+        cmocka_unit_test(a_slow_page_has_no_thin_link),
         cmocka_unit_test(too_much_that_waits_is_noted),
         cmocka_unit_test(a_message_in_pieces_has_a_limit),
         cmocka_unit_test(quality_follows_the_trips),

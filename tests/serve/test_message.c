@@ -35,8 +35,8 @@ static void messages_are_read(void **state) {
     m = read_good("{\"t\":\"moving\",\"on\":true}");
     assert_true(m.kind == MESSAGE_MOVING && m.on);
     message_free(&m);
-    m = read_good("{\"t\":\"ack\",\"n\":17,\"ms\":6}");
-    assert_true(m.kind == MESSAGE_ACK && m.n == 17);
+    m = read_good("{\"t\":\"ack\",\"n\":17,\"took\":6}");
+    assert_true(m.kind == MESSAGE_ACK && m.n == 17 && m.took == 6);
     message_free(&m);
     m = read_good("{\"t\":\"part\"}");
     assert_int_equal(m.kind, MESSAGE_PART);
@@ -83,6 +83,8 @@ static void what_says_nothing_is_named(void **state) {
         "{\"t\":\"moving\",\"on\":1}",
         "{\"t\":\"ack\"}",
         "{\"t\":\"ack\",\"n\":\"1\"}",
+        "{\"t\":\"ack\",\"n\":1,\"took\":-1}",
+        "{\"t\":\"ack\",\"n\":1,\"took\":0.5}",
         "{\"t\":\"ask\"}",
         "{\"t\":\"ask\",\"what\":1}"};
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
