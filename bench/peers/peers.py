@@ -2,9 +2,9 @@
 """bench/peers/peers.py - Snowglass beside what people use today on processors.
 
 Run it as `./dev peers`, which builds what it needs.  Every case is a volume, a
-look and a picture size; all programs are loaded with it, and then take turns,
-one picture each, so that a change of the machine's speed meets them all.  What
-is compared and why it is fair: README.md.
+look and a picture size; all programs are loaded with it, and then each in its
+turn draws the object from all sides, again and again, so that a change of the
+machine's speed meets them all.  What is compared and why it is fair: README.md.
 """
 import argparse
 import array
@@ -24,11 +24,14 @@ import programs
 import report
 
 AZIMUTH, ELEVATION = 30, 20  # of the first picture, in degrees
-STEP = 0.5                   # degrees from picture to picture
-SLOW = 1.0                   # seconds: such a program gets SLOW_TURNS turns,
-SLOW_TURNS = 3               # and its warming up counts as one
-REST = 0.01  # seconds before each picture: idle threads of the last program
-             # may wait actively for a while, at the next one's cost
+# Pictures all around the object: so many where one takes at most that many
+# seconds.
+AROUND = ((0.05, 120), (0.5, 12), (math.inf, 3))
+CHANGES = 15                 # pictures with another transfer function each
+SLOW = 1.0                   # seconds: such a program makes SLOW_TIMES of them,
+SLOW_TIMES = 3               # and its warming up counts as one
+REST = 0.01  # seconds before a program's turn: idle threads of the last one may
+             # wait actively for a while, at the next one's cost
 
 # name: (file below --data, phantom when there is none, voxels, first visible
 # value).  Where the phantom is None the volume is left out without --data.
@@ -166,6 +169,7 @@ class Runner:
         self.worker = worker
         self.first = None  # (wall, cpu) of the first picture
         self.turning, self.changing = [], []
+        self.around = 0    # pictures all around the object
         self.megabytes = self.idle = 0  # at most; before loading
         self.picture = None
         self.failed = None
@@ -185,10 +189,24 @@ class Runner:
         time.sleep(REST)
         return self.attempt(self.worker.frame, azimuth, ELEVATION)
 
-    def may(self, times):
-        """Whether it is to have another turn."""
-        return not self.failed and (len(times) < SLOW_TURNS or
-                                    times[-1][0] < SLOW)
+    def whole_turn(self):
+        """(wall, cpu) of a picture, the mean of those all around the object;
+        they follow one another at once, as when a user turns it."""
+        time.sleep(REST)
+        sums = [0, 0]
+        for n in range(self.around):
+            took = self.attempt(self.worker.frame,
+                                AZIMUTH + 360 * (n + 1) / self.around,
+                                ELEVATION)
+            if not took:
+                return None
+            sums = [a + b for a, b in zip(sums, took)]
+        return [a / self.around for a in sums]
+
+    def may_change(self):
+        """Whether it is to make another picture with a new table."""
+        return not self.failed and (len(self.changing) < SLOW_TIMES or
+                                    self.changing[-1][0] < SLOW)
 
 
 def begin(runner, case, folder):
@@ -209,23 +227,25 @@ def begin(runner, case, folder):
 
 
 def turn(runners, turns):
-    """The view turns, the transfer function stays.  One step beforehand: what
-    a program does at its second picture only is no part of its pace."""
-    for step in range(turns + 1):
-        azimuth = AZIMUTH + STEP * (step + 1)
+    """The view turns, the transfer function stays.  A first turn warms up: what
+    a program does once for each axis is no part of its pace."""
+    for runner in runners:
+        took = runner.frame(AZIMUTH)
+        runner.around = next(n for most, n in AROUND
+                             if not took or took[0] <= most)
+    for number in range(turns + 1):
         for runner in runners:
-            if runner.may(runner.turning):
-                took = runner.frame(azimuth)
-                if took and (step or took[0] > SLOW):
-                    runner.turning.append(took)
+            took = runner.whole_turn()
+            if took and number:
+                runner.turning.append(took)
 
 
-def change(runners, case, turns, folder):
+def change(runners, case, folder):
     """The view stays, the transfer function changes for every picture."""
-    for step in range(turns + 1):
+    for step in range(CHANGES + 1):
         table = write_table(case, 1 + step % 5, folder)
         for runner in runners:
-            if runner.may(runner.changing):
+            if runner.may_change():
                 runner.attempt(runner.worker.table, table)
                 took = runner.frame(AZIMUTH)
                 if took and (step or took[0] > SLOW):
@@ -249,7 +269,7 @@ def figures(runner, reference):
                change_least=1e3 * min(t[0] for t in runner.changing),
                change=middle(runner.changing, 0),
                change_cpu=middle(runner.changing, 1),
-               turns=len(runner.turning), megabytes=runner.megabytes,
+               turns=len(runner.turning), pictures=runner.around, megabytes=runner.megabytes,
                idle_megabytes=runner.idle)
     if reference and reference is not runner.picture:
         row["psnr"], row["psnr_scaled"] = pictures.psnr(runner.picture,
@@ -268,7 +288,7 @@ def measure(case, chosen, options, display):
             begin(runners[-1], case, folder)
         turn([r for r in runners if r.worker.name != "volpack-octree"],
              options.turns)
-        change(runners, case, options.turns, folder)
+        change(runners, case, folder)
         for runner in runners:
             runner.megabytes = runner.attempt(runner.worker.peak_megabytes)
     finally:
@@ -298,8 +318,8 @@ def parse():
         "Teem, on the same volumes, views and transfer functions.")
     parser.add_argument("--data", help="folder of the real volumes (the one "
                         "that holds classic/); without it phantoms")
-    parser.add_argument("--turns", type=int, default=15, help="pictures whose "
-                        "median is taken, of each kind (%(default)s)")
+    parser.add_argument("--turns", type=int, default=5, help="turns all around "
+                        "the object whose median is taken (%(default)s)")
     parser.add_argument("--case", action="append", metavar="VOLUME:LOOK:SIZE",
                         help="only this one, may be repeated; volumes: "
                         f"{' '.join(VOLUMES)}; looks: {' '.join(LOOKS)}; all: "

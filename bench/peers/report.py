@@ -169,7 +169,7 @@ def markdown(result, command):
     parts = [
         f"Measured on {result['machine']['cpu']} "
         f"({result['machine']['processors']} processors), medians of "
-        f"{result['turns']} pictures, programs in turn; one thread / two "
+        f"{result['turns']} whole turns, programs in turn; one thread / two "
         f"threads; Snowglass with method {result['method']}:",
         turning(cases), changing(cases),
         other(cases, "first", "ms to the first picture after loading, "
