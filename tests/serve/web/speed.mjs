@@ -5,7 +5,7 @@
 // Prints one JSON object: milliseconds from an input to the painted picture, how
 // many pictures and bytes came, when the picture rests, what a picture took of the
 // processor for the viewer and for the browser, and the longest wait of a turn for a
-// picture while a second page is opened.  PID is the viewer's, PORT that of a thin link.
+// picture while a second page is opened, and while none is.  PID is the viewer's, PORT that of a thin link.
 import {readFileSync, readdirSync} from 'node:fs';
 
 const [playwright, chromium, url, sides, pid, port] = process.argv.slice(2);
@@ -87,16 +87,24 @@ const used = root => {
 const before = [pid, process.pid].map(used);
 const out = {first, turn: await page.evaluate(seconds => window.measure.turn(seconds), port ? 8 : 4)};
 [out.viewer, out.browser] = [pid, process.pid].map((id, i) => (used(id) - before[i]) / out.turn.pictures);
-if (!port) {
-    out.edit = await page.evaluate(() => window.measure.edit(3));
+/** The longest wait of a turn for a picture, from its first second on, in which `act` is done. */
+const wait = async act => {
     const turn = page.evaluate(() => window.measure.turn(6));
     await page.waitForTimeout(1000);
     const from = await page.evaluate(() => performance.now());
-    const other = await browser.newPage({viewport});
-    await other.goto(url, {waitUntil: 'commit'});
-    await other.waitForFunction(() => window.snowglass?.page.frames > 0, null, {timeout: 120000});
+    await act();
     await turn;
-    out.wait = await page.evaluate(from => window.measure.wait(from), from);
+    return page.evaluate(from => window.measure.wait(from), from);
+};
+if (!port) { // the edit last: after it voxels are encoded anew for each direction
+    out.still = await wait(() => {});
+    out.wait = await wait(async () => {
+        const other = await browser.newPage({viewport});
+        await other.goto(url, {waitUntil: 'commit'});
+        await other.waitForFunction(() => window.snowglass?.page.frames > 0, null, {timeout: 120000});
+    });
+    await browser.contexts().at(-1).pages().at(-1).close();
+    out.edit = await page.evaluate(() => window.measure.edit(3));
 }
 console.log(JSON.stringify(out));
 await browser.close();
