@@ -352,14 +352,6 @@ static snow_status draw_caption(snow_overlay *overlay, const char *caption,
     return SNOW_STATUS_OK;
 }
 
-static snow_status draw_bar(snow_overlay *overlay, const snow_transfer *t,
-                            bool opacity, color_bar *bar) {
-    SNOW_TRY(draw_colors(overlay, t, bar));
-    if (opacity)
-        SNOW_TRY(draw_opacity(overlay, t, bar));
-    return draw_ticks(overlay, bar);
-}
-
 snow_status snow_overlay_color_bar(snow_overlay *overlay,
                                    const snow_transfer *transfer,
                                    const char *unit, const double range[2],
@@ -394,8 +386,12 @@ snow_status snow_overlay_color_bar(snow_overlay *overlay,
     SNOW_TRY(draw_caption(overlay, unit ? unit : "", height, &y));
     bar.y0 = (int)(y + height);
     bar.y1 = (int)(slot[1] - height);
-    if (bar.y1 - bar.y0 >= BAR_LEAST * height)
-        return draw_bar(overlay, transfer, !range, &bar);
+    if (bar.y1 - bar.y0 >= BAR_LEAST * height) {
+        SNOW_TRY(draw_colors(overlay, transfer, &bar));
+        if (!range)
+            SNOW_TRY(draw_opacity(overlay, transfer, &bar));
+        return draw_ticks(overlay, &bar);
+    }
     overlay->shape_count = first;
     snow_notify(overlay->context,
                 "the picture has no room for the colour bar%s%s",

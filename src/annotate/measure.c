@@ -146,14 +146,6 @@ static void write_lines(measure_view *m, const char *value_unit) {
     add_line(m, text);
 }
 
-/* Writes the lines with the upper left corner of their box at (x, y). */
-static snow_status write_label(const measure_view *m, double x, double y) {
-    for (int n = 0; n < m->count; n++)
-        SNOW_TRY(snow_overlay_text(m->overlay, x, y + 1.6 * n * m->height, 0, 0,
-                                   m->height, m->lines[n]));
-    return SNOW_STATUS_OK;
-}
-
 /* How many spots are tried. */
 #define SPOTS 8
 
@@ -272,7 +264,10 @@ static snow_status draw_label(const measure_view *m, size_t shape) {
         if (is_free(overlay, taken))
             break;
     }
-    return write_label(m, left, top);
+    for (int n = 0; n < m->count; n++)
+        SNOW_TRY(snow_overlay_text(overlay, left, top + 1.6 * n * m->height, 0,
+                                   0, m->height, m->lines[n]));
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_overlay_measure(snow_overlay *overlay,

@@ -218,16 +218,6 @@ static snow_status check_type(snow_insitu *insitu) {
                              snow_type_name(insitu->type));
 }
 
-/* What this rank finds out by itself: its bricks, how the view lies, how wide
- * ghosts must be, which grow as pictures get smaller. */
-static snow_status look_around(snow_insitu *insitu, const snow_view *view,
-                               const snow_settings *settings,
-                               snow_ranks_needs *needs) {
-    INSITU_TRY(list_bricks(insitu));
-    return snow_ranks_find_needs(insitu->context, &insitu->whole, view,
-                                 settings, &insitu->look.look, needs);
-}
-
 snow_status snow_insitu_lay_out(snow_insitu *insitu) {
     snow_view view = snow_insitu_view(insitu), lowered;
     snow_settings settings;
@@ -237,7 +227,13 @@ snow_status snow_insitu_lay_out(snow_insitu *insitu) {
     snow_ranks_needs needs = {.size = sizeof needs};
     int64_t facts[SNOW_INSITU_FACTS];
     snow_insitu_lowered(insitu, &lowered, &settings);
-    snow_status status = look_around(insitu, &lowered, &settings, &needs);
+    /* What this rank finds out by itself: its bricks, how the view lies, how
+     * wide ghosts must be, which grow as pictures get smaller. */
+    snow_status status = list_bricks(insitu);
+    if (status == SNOW_STATUS_OK)
+        status =
+            snow_ranks_find_needs(insitu->context, &insitu->whole, &lowered,
+                                  &settings, &insitu->look.look, &needs);
     INSITU_TRY(snow_comm_agree_status(insitu->comm, status));
     memcpy(l.layers, needs.layers, sizeof l.layers);
     bool is_united = unite_bricks(insitu, &united);

@@ -8,28 +8,19 @@
 
 /* Adapters between the library's tables, of enumerations and of plain indices,
  * and the rows. */
-#define NAMES(word)                                    \
-    static const char *word##_name(int value) {        \
-        return snow_##word##_name((snow_##word)value); \
+#define NAMES(word, type)                       \
+    static const char *word##_name(int value) { \
+        return snow_##word##_name((type)value); \
     }
-NAMES(method)
-NAMES(encoding)
-NAMES(kernel)
-NAMES(quality)
-NAMES(isa)
-NAMES(mode)
-
-static const char *preset_name(int value) {
-    return snow_preset_name((size_t)value);
-}
-
-static const char *colormap_name(int value) {
-    return snow_colormap_name((size_t)value);
-}
-
-static const char *view_name(int value) {
-    return snow_view_name((size_t)value);
-}
+NAMES(method, snow_method)
+NAMES(encoding, snow_encoding)
+NAMES(kernel, snow_kernel)
+NAMES(quality, snow_quality)
+NAMES(isa, snow_isa)
+NAMES(mode, snow_mode)
+NAMES(preset, size_t)
+NAMES(colormap, size_t)
+NAMES(view, size_t)
 
 /* The first type is "none". */
 static const char *type_name(int value) {
@@ -41,39 +32,19 @@ static int type_named(const char *name) {
     return type == SNOW_TYPE_NONE ? -1 : (int)type;
 }
 
-static const char *of_list(const char *const *list, int count, int value) {
-    return value >= 0 && value < count ? list[value] : NULL;
-}
-
-static const char *shade_name(int value) {
-    static const char *const names[] = {"phong", "none"};
-    return of_list(names, 2, value);
-}
-
-static const char *endian_name(int value) {
-    static const char *const names[] = {"", "little", "big"};
-    return of_list(names, 3, value);
-}
-
-static const char *vertical_name(int value) {
-    static const char *const names[] = {"levels", "height"};
-    return of_list(names, 2, value);
-}
-
-static const char *suv_name(int value) {
-    static const char *const names[] = {"bw", "lbm", "bsa", "none"};
-    return of_list(names, 4, value);
-}
-
-static const char *fit_name(int value) {
-    static const char *const names[] = {"", "visible", "volume"};
-    return of_list(names, 3, value);
-}
-
-static const char *box_name(int value) {
-    static const char *const names[] = {"outline", "axes"};
-    return of_list(names, 2, value);
-}
+/* Names that only recipes have. */
+#define LIST(word, ...)                                           \
+    static const char *word##_name(int value) {                   \
+        static const char *const names[] = {__VA_ARGS__};         \
+        const int count = sizeof names / sizeof *names;           \
+        return value >= 0 && value < count ? names[value] : NULL; \
+    }
+LIST(shade, "phong", "none")
+LIST(endian, "", "little", "big")
+LIST(vertical, "levels", "height")
+LIST(suv, "bw", "lbm", "bsa", "none")
+LIST(fit, "", "visible", "volume")
+LIST(box, "outline", "axes")
 
 /* --- the table ------------------------------------------------------------ */
 

@@ -246,23 +246,18 @@ snow_status snow_recipe_get_view(snow_context *context,
     return SNOW_RECORD_FILL(context, snow_view, &view, out);
 }
 
-/* The length of a millimetre in a unit; 0 if that is no length. */
-static double length_of_mm(const char *unit) {
-    const double length = snow_unit_length(*unit ? unit : "mm", NULL);
-    return length > 0 ? snow_unit_length("mm", NULL) / length : 0;
-}
-
 snow_status snow_recipe_get_settings(snow_context *context,
                                      const snow_recipe *recipe,
                                      const char *unit, snow_settings *out) {
     snow_settings settings = recipe->settings;
     if (recipe->opacity_per_mm) {
-        settings.opacity_length = length_of_mm(unit);
-        if (settings.opacity_length == 0)
+        const double length = snow_unit_length(*unit ? unit : "mm", NULL);
+        if (!(length > 0))
             return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
                                      "the volume's unit '%s' is not a length; "
                                      "use opacities per voxel",
                                      unit);
+        settings.opacity_length = snow_unit_length("mm", NULL) / length;
     }
     return SNOW_RECORD_FILL(context, snow_settings, &settings, out);
 }

@@ -35,17 +35,12 @@ SNOW_RECORD_OF_ZEROS(snow_measure);
 
 /* --- the world ------------------------------------------------------------ */
 
-static double length_of(const snow_volume_info *info, int axis) {
-    const double scale = info->axis_scale[axis];
-    return fabs(scale) > 0 ? scale : 1;
-}
-
 /* The volume in the units of its axes. */
 static snow_volume_info unscaled(const snow_volume_info *info) {
     snow_volume_info own = *info;
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 4; j++)
-            own.matrix[i][j] /= length_of(info, i);
+        for (int j = 0; j < 4 && fabs(info->axis_scale[i]) > 0; j++)
+            own.matrix[i][j] /= info->axis_scale[i];
     for (int j = 0; j < 3; j++) {
         const double step[3] = {own.matrix[0][j], own.matrix[1][j],
                                 own.matrix[2][j]};

@@ -125,19 +125,15 @@ double snow_hounsfield_floor(const snow_histogram *histogram, double low) {
     return is && low < FLOOR && histogram->max > FLOOR ? FLOOR : low;
 }
 
-static bool shows_air(const snow_histogram *histogram, snow_range range) {
-    return range == SNOW_RANGE_LEAST && !histogram->scale.log &&
-           snow_are_hounsfield(&histogram->volume->info, histogram->min,
-                               histogram->max);
-}
-
 snow_status snow_robust_range(const snow_histogram *histogram, snow_range kind,
                               double *low, double *high,
                               snow_transfer_builder *builder) {
     const double full[2] = {*low, *high}, count = (double)histogram->finite;
     double range[2] = {*low, *high};
     bool is;
-    if (shows_air(histogram, kind)) {
+    if (kind == SNOW_RANGE_LEAST && !histogram->scale.log &&
+        snow_are_hounsfield(&histogram->volume->info, histogram->min,
+                            histogram->max)) {
         *low = AIR_LOW;
         *high = AIR_HIGH;
         strcpy(builder->range_note, "; air in Hounsfield units");

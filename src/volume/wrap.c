@@ -17,14 +17,6 @@ static snow_status take_spacing(snow_context *context, const double spacing[3],
     return SNOW_STATUS_OK;
 }
 
-/* Its last row may be left at zeros. */
-static void take_matrix(const snow_volume_info *info, double own[4][4]) {
-    static const double zero[4];
-    memcpy(own, info->matrix, sizeof info->matrix);
-    if (memcmp(own[3], zero, sizeof zero) == 0)
-        own[3][3] = 1;
-}
-
 /* Voxels of the caller come without a file: no source is checked against the
  * sizes, whose truth is the caller's word. */
 snow_status snow_volume_wrap(snow_context *context,
@@ -39,9 +31,12 @@ snow_status snow_volume_wrap(snow_context *context,
     snow_volume_info own = snow_volume_info_default("memory");
     memcpy(own.dims, info.dims, sizeof own.dims);
     own.type = info.type;
-    if (memcmp(info.matrix, zero, sizeof zero) != 0)
-        take_matrix(&info, own.matrix);
-    else
+    if (memcmp(info.matrix, zero, sizeof zero) != 0) {
+        memcpy(own.matrix, info.matrix, sizeof own.matrix);
+        /* Its last row may be left at zeros. */
+        if (memcmp(own.matrix[3], zero[3], sizeof zero[3]) == 0)
+            own.matrix[3][3] = 1;
+    } else
         SNOW_TRY(take_spacing(context, info.spacing, &own));
     own.slope = info.slope == 0 ? 1 : info.slope;
     own.intercept = info.intercept;

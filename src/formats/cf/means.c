@@ -3,12 +3,6 @@
 #include "formats/cf/model.h"
 #include "volume/mask.h"
 
-/* The sizes of what is read for a box: one more along staggered axes. */
-static void widen(const cf_model *model, int64_t dims[3]) {
-    for (int i = 0; i < 3; i++)
-        dims[i] += model->staggered[i];
-}
-
 /* Makes a row of means of those around it: of two rows, four or one. */
 static void make_row(const cf_model *model, const snow_volume *from, int64_t y,
                      int64_t z, int64_t width, double *row, double *out) {
@@ -55,11 +49,11 @@ snow_status snow_model_means(void *user, const snow_volume_options *options,
     snow_volume *from = NULL, *to = NULL;
     snow_region box;
     SNOW_TRY(snow_region_lay_out(r->context, options, info, &box));
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) { /* one more along staggered axes */
         own.crop[i][0] = box.first[i];
         own.crop[i][1] = box.first[i] + box.count[i] + r->model->staggered[i];
+        native.dims[i] += r->model->staggered[i];
     }
-    widen(r->model, native.dims);
     SNOW_TRY(r->read(r->user, &own, &native, out ? &from : NULL));
     info->type = snow_masked_type(native.type);
     info->slope = native.slope;

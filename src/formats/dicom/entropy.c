@@ -111,13 +111,6 @@ static bool walk_block(stream *s, const component *c) {
     return true;
 }
 
-static bool walk_unit(stream *s, const component *c, int count) {
-    bool good = true;
-    for (int i = 0; i < count && good; i++)
-        good = s->lossless ? walk_difference(s, c->dc) : walk_block(s, c);
-    return good;
-}
-
 /* Returns the marker behind the last unit, whose byte may end with padding; 0
  * if there are other bytes. */
 static int end_units(stream *s) {
@@ -155,10 +148,13 @@ static bool walk_units(stream *s, component *const *scan, int count) {
                 return false;
             s->at += 2;
         }
-        for (int i = 0; i < count; i++)
-            if (!walk_unit(s, scan[i],
-                           single ? 1 : scan[i]->across * scan[i]->down))
-                return false;
+        for (int i = 0; i < count; i++) {
+            const component *c = scan[i];
+            for (int left = single ? 1 : c->across * c->down; left > 0; left--)
+                if (!(s->lossless ? walk_difference(s, c->dc)
+                                  : walk_block(s, c)))
+                    return false;
+        }
     }
     return end_units(s) != 0;
 }

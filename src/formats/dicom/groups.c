@@ -56,12 +56,6 @@ static int compare_planes(const dicom_frame *a, const dicom_frame *b) {
     return by;
 }
 
-/* 0 if two frames may be slices of one volume. */
-static int compare_frames(const dicom_frame *a, const dicom_frame *b) {
-    int by = a->image == b->image ? 0 : compare_images(a->image, b->image);
-    return by ? by : compare_planes(a, b);
-}
-
 /* Whether frames are alike but for their series. */
 static bool are_alike(const dicom_frame *frames, size_t count) {
     for (size_t i = 0; i < count; i++)
@@ -103,7 +97,7 @@ size_t snow_dicom_group(dicom_frame *frames, size_t count,
             if (frames[i].image != frames[first].image &&
                 compare_images(frames[i].image, frames[first].image))
                 break; /* sorted: no other belongs to it */
-            if (compare_frames(&frames[first], &frames[i]))
+            if (compare_planes(&frames[first], &frames[i]))
                 continue;
             dicom_frame moved = frames[i];
             memmove(&frames[end + 1], &frames[end], (i - end) * sizeof moved);

@@ -124,22 +124,16 @@ static void step_of_slices(dicom_stack *s, double step[3]) {
         step[i] = (b[i] - a[i]) / steps;
 }
 
-/* Frames without a position are slices in the order of their numbers. */
-static void order_frames(ranked *all, size_t count, const double normal[3]) {
-    bool placed = all[0].frame.placed;
-    for (size_t i = 0; i < count; i++)
-        all[i].along = placed ? snow_dot(all[i].frame.position, normal) : 0;
-    qsort(all, count, sizeof *all, by_place);
-}
-
 static snow_status lay_stack(dicom_stack *s, dicom_frame *frames, ranked *all,
                              size_t count) {
     double step[3];
-    for (size_t i = 0; i < count; i++)
-        all[i].frame = frames[i];
     snow_dicom_normal(frames, s->normal);
-    order_frames(all, count, s->normal);
     s->placed = frames[0].placed;
+    /* Frames without a position are slices in the order of their numbers. */
+    for (size_t i = 0; i < count; i++)
+        all[i] = (ranked){
+            frames[i], s->placed ? snow_dot(frames[i].position, s->normal) : 0};
+    qsort(all, count, sizeof *all, by_place);
     s->times = 1;
     s->places = s->placed ? 0 : count;
     if (s->placed)

@@ -55,23 +55,16 @@ typedef struct box_job {
 
 /* --- where chunks lie ----------------------------------------------------- */
 
-/* Elements low .. high - 1 of an axis, which are in chunk and box. */
-static void overlap(const box_job *job, const hsize_t *chunk, int axis,
-                    hsize_t *low, hsize_t *high) {
-    *low = SNOW_MAX(chunk[axis], job->first[axis]);
-    *high = SNOW_MIN(chunk[axis] + job->chunk[axis],
-                     job->first[axis] + job->count[axis]);
-}
-
 /* Copies rows of the last axis from the chunk to the box; from NULL, the fill
  * value. */
 static void put_chunk(const box_job *job, const hsize_t *chunk,
                       const unsigned char *values) {
     hsize_t low[HDF5_MOST_AXES], high[HDF5_MOST_AXES], at[HDF5_MOST_AXES];
     const int last = job->axes - 1;
-    for (int i = 0; i < job->axes; i++) {
-        overlap(job, chunk, i, &low[i], &high[i]);
-        at[i] = low[i];
+    for (int i = 0; i < job->axes; i++) { /* what is in chunk and box */
+        at[i] = low[i] = SNOW_MAX(chunk[i], job->first[i]);
+        high[i] =
+            SNOW_MIN(chunk[i] + job->chunk[i], job->first[i] + job->count[i]);
     }
     const size_t row = (size_t)(high[last] - low[last]);
     for (;;) {

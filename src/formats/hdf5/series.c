@@ -69,17 +69,15 @@ typedef struct numbers {
     snow_status status;
 } numbers;
 
-/* A group of openPMD that is shown as one: its components make a vector. */
-static bool is_record(hid_t file, const char *name) {
-    return H5Aexists_by_name(file, name, "geometry", H5P_DEFAULT) > 0;
-}
-
 static herr_t look(hid_t file, const char *name, const H5O_info_t *info,
                    void *user) {
     numbers *n = user;
     int64_t number;
+    /* A group with this attribute is shown as one: a record of openPMD, whose
+     * components make a vector. */
     if (!fits(n->pattern, name, &number) ||
-        (info->type != H5O_TYPE_DATASET && !is_record(file, name)))
+        (info->type != H5O_TYPE_DATASET &&
+         H5Aexists_by_name(file, name, "geometry", H5P_DEFAULT) <= 0))
         return 0;
     if (n->path && number == n->wanted) {
         snprintf(n->path, HDF5_NAME_BYTES, "/%.500s", name);

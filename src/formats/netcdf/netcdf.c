@@ -218,13 +218,6 @@ static snow_status read_array(void *user, const snow_volume_options *options,
     return status;
 }
 
-static snow_status read_job(netcdf_job *job, const snow_volume_options *options,
-                            snow_volume_info *info, snow_volume **out) {
-    SNOW_TRY(describe_variable(job, options, info));
-    return snow_cf_read(job->header->context, &job->model, &job->grid,
-                        &job->values, read_array, job, options, info, out);
-}
-
 /* --- other parts of the file ----------------------------------------------
  */
 
@@ -324,7 +317,11 @@ static snow_status read_file(snow_source *source, snow_seekable *bytes,
                          .axes_of = axes_of,
                          .letters = letters_of,
                          .read = read_other};
-    snow_status status = read_job(&job, options, info, out);
+    snow_status status = describe_variable(&job, options, info);
+    if (status == SNOW_STATUS_OK)
+        status =
+            snow_cf_read(header->context, &job.model, &job.grid, &job.values,
+                         read_array, &job, options, info, out);
     snow_cf_release(header->context, job.axes, 4);
     return status;
 }

@@ -55,11 +55,6 @@ static void find_steps(const double *at, int64_t count, double *least,
     }
 }
 
-/* The node of an even axis that is nearest to a coordinate. */
-static int64_t node_of(const double *at, double step, int64_t line) {
-    return (int64_t)floor((at[line] - at[0]) / step + 0.5);
-}
-
 /* Lines of the file that have the node of the one before; and how far the lines
  * are from their nodes at most. */
 static int64_t count_shared(const double *at, int64_t count, double step,
@@ -67,7 +62,7 @@ static int64_t count_shared(const double *at, int64_t count, double step,
     int64_t shared = 0, before = -1;
     *shift = 0;
     for (int64_t i = 0; i < count; i++) {
-        const int64_t node = node_of(at, step, i);
+        const int64_t node = (int64_t)floor((at[i] - at[0]) / step + 0.5);
         shared += node == before;
         before = node;
         *shift = fmax(*shift, fabs(at[i] - at[0] - step * (double)node));

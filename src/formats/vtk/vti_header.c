@@ -169,14 +169,6 @@ static void take_name(const char **attributes, const char *kind,
         memcpy(out, name, strlen(name) + 1);
 }
 
-static void begin_section(vti_text *text, const char **attributes,
-                          bool points) {
-    text->points = points && !text->ignored;
-    text->cells = !points && !text->ignored;
-    take_name(attributes, "Scalars", text->scalars);
-    take_name(attributes, "Vectors", text->vectors);
-}
-
 static int judge(const vti_text *text, const char *name) {
     const char *asked = text->options->dataset;
     if (asked)
@@ -276,8 +268,12 @@ static snow_status begin_element(void *user, const char *name,
     if (!strcmp(name, "AppendedData"))
         return begin_appended(text, attributes);
     const bool points = !strcmp(name, "PointData");
-    if (text->piece && (points || !strcmp(name, "CellData")))
-        begin_section(text, attributes, points);
+    if (text->piece && (points || !strcmp(name, "CellData"))) {
+        text->points = points && !text->ignored;
+        text->cells = !points && !text->ignored;
+        take_name(attributes, "Scalars", text->scalars);
+        take_name(attributes, "Vectors", text->vectors);
+    }
     return SNOW_STATUS_OK;
 }
 

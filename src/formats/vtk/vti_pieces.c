@@ -71,13 +71,6 @@ static snow_status begin_element(void *user, const char *name,
     return strcmp(name, "Piece") ? SNOW_STATUS_OK : take_piece(p, attributes);
 }
 
-static snow_status find_pieces(vti_pieces *p) {
-    SNOW_TRY(snow_index_parse_text(&p->xml));
-    return p->count > 1 ? SNOW_STATUS_OK
-                        : fail_pieces(p, "has no piece that spans the "
-                                         "WholeExtent; write the file again");
-}
-
 /* The bytes of the head, then those from a piece on. */
 typedef struct spliced {
     snow_seekable *bytes;
@@ -149,7 +142,10 @@ snow_status snow_vti_read_pieces(snow_source *source, snow_seekable *bytes,
                           .user = p,
                           .next = snow_index_next,
                           .from = &p->from};
-    snow_status status = find_pieces(p);
+    snow_status status = snow_index_parse_text(&p->xml);
+    if (status == SNOW_STATUS_OK && p->count <= 1)
+        status = fail_pieces(
+            p, "has no piece that spans the WholeExtent; write the file again");
     const index_parts parts = {context, p->count, p, name_piece, open_piece};
     if (status == SNOW_STATUS_OK)
         status = snow_mosaic_read(&parts, options, info, out);

@@ -102,12 +102,6 @@ static snow_status read_values(const zarr_array *array, double **out) {
     return status;
 }
 
-/* Whether an array has a coordinate for each of so many indices. */
-static bool fits(const zarr_array *array, int64_t count) {
-    return array->axes == 1 && array->sizes[0] == count &&
-           count <= CF_MOST_COORDINATES;
-}
-
 /* Takes the coordinates of a node, if it is an array of them. */
 static snow_status take_node(const zarr_store *store, const char *path,
                              const char *name, const zarr_node *node,
@@ -121,7 +115,8 @@ static snow_status take_node(const zarr_store *store, const char *path,
                     name, store->context->message);
         return SNOW_STATUS_OK;
     }
-    if (!fits(&array, count))
+    if (array.axes != 1 || array.sizes[0] != count ||
+        count > CF_MOST_COORDINATES)
         return SNOW_STATUS_OK;
     read_attributes(store->context, node->attributes, &says);
     *hint = snow_cf_hint(name, &says);
