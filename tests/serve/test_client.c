@@ -33,38 +33,54 @@ static void wake_nobody(void *user) {
     (void)user;
 }
 
-static void queue_long(client *c, outbox *box, message_topic topic, int level,
+/* The page, and what it is sent through, of each test. */
+static outbox *box;
+static client c;
+
+static int begin_client(void **state) {
+    (void)state;
+    box = outbox_new(wake_nobody, NULL);
+    c = (client){.id = 1};
+    return 0;
+}
+
+static int end_client(void **state) {
+    (void)state;
+    client_free(&c, box);
+    outbox_free(box);
+    return 0;
+}
+
+static void queue_long(client *to, message_topic topic, int level,
                        size_t length) {
     outgoing *p = outgoing_new(length);
     assert_non_null(p);
     memset(p->bytes, 0, length);
     p->topic = topic;
     p->bytes[8] = (unsigned char)level;
-    client_queue(c, box, p);
+    client_queue(to, box, p);
     outgoing_release(box, p);
 }
 
-static void queue(client *c, outbox *box, message_topic topic, int level) {
-    queue_long(c, box, topic, level, FRAME_HEAD_BYTES);
+static void queue(client *to, message_topic topic, int level) {
+    queue_long(to, topic, level, FRAME_HEAD_BYTES);
 }
 
 /* Sends what waits. */
-static void send_all(client *c, outbox *box) {
-    while (client_has_more(c))
-        assert_true(client_send(c, box));
+static void send_all(client *to) {
+    while (client_has_more(to))
+        assert_true(client_send(to, box));
 }
 
 /* The quality after pictures of a length, each of which takes a time. */
-static int quality_after(client *c, int pictures, size_t length, int ms) {
-    outbox *box = outbox_new(wake_nobody, NULL);
+static int quality_after(client *to, int pictures, size_t length, int ms) {
     for (int i = 0; i < pictures; i++) {
-        queue_long(c, box, MESSAGE_PICTURE, 0, length);
-        send_all(c, box);
+        queue_long(to, MESSAGE_PICTURE, 0, length);
+        send_all(to);
         now += 1000 * ms;
-        client_acknowledge(c, 0);
+        client_acknowledge(to, 0);
     }
-    outbox_free(box);
-    return client_quality(c);
+    return client_quality(to);
 }
 
 static void quality_follows_the_trips(void **state) {
@@ -82,7 +98,7 @@ static void quality_follows_the_trips(void **state) {
         {20000, 300, 50}, /* a slow one */
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        client c = {.id = 1};
+        c = (client){.id = 1};
         assert_int_equal(client_quality(&c), 75);
         assert_int_equal(quality_after(&c, 100, rows[i].length, rows[i].ms),
                          rows[i].quality);
@@ -100,7 +116,6 @@ static void quality_goes_step_by_step_and_stays(void **state) {
         {1, 2000, 62},                /* very late */
         {60, 20, 90},  {40, 90, 90},  {8, 200, 85},
     };
-    client c = {.id = 1};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         assert_int_equal(quality_after(&c, rows[i].pictures, 20000, rows[i].ms),
                          rows[i].quality);
@@ -112,18 +127,15 @@ static void quality_goes_step_by_step_and_stays(void **state) {
 /* The picture at rest is large, and what waits behind it is late. */
 static void pictures_at_rest_do_not_count(void **state) {
     (void)state;
-    outbox *box = outbox_new(wake_nobody, NULL);
-    client c = {.id = 1};
     for (int i = 0; i < 40; i++) {
-        queue(&c, box, MESSAGE_PICTURE, 2);
-        send_all(&c, box);
-        queue(&c, box, MESSAGE_PICTURE, 0);
-        send_all(&c, box);
+        queue(&c, MESSAGE_PICTURE, 2);
+        send_all(&c);
+        queue(&c, MESSAGE_PICTURE, 0);
+        send_all(&c);
         now += 900000;
         client_acknowledge(&c, 0);
-        queue(&c, box, MESSAGE_PICTURE,
-              0); /* counts, behind one that does not */
-        send_all(&c, box);
+        queue(&c, MESSAGE_PICTURE, 0); /* counts, behind one that does not */
+        send_all(&c);
         client_acknowledge(&c, 0);
         now += 60000;
         client_acknowledge(&c, 0);
@@ -132,80 +144,63 @@ static void pictures_at_rest_do_not_count(void **state) {
     assert_int_equal(client_quality(&c), 75);
     assert_true(c.trip > 0.059 && c.trip < 0.061);
     assert_int_equal(c.under_way, 0);
-    client_free(&c, box);
-    outbox_free(box);
 }
 
 /* Whether pictures have to be packed in another way is known at once. */
 static void a_change_of_quality_is_told(void **state) {
     (void)state;
-    outbox *box = outbox_new(wake_nobody, NULL);
-    client c = {.id = 1};
     for (int i = 1; i <= 16; i++) {
-        queue(&c, box, MESSAGE_PICTURE, 0);
-        send_all(&c, box);
+        queue(&c, MESSAGE_PICTURE, 0);
+        send_all(&c);
         now += 400000;
         assert_int_equal(client_acknowledge(&c, 0), i % 8 == 0);
     }
-    outbox_free(box);
 }
 
 static void of_pictures_the_newest_waits(void **state) {
     (void)state;
-    outbox *box = outbox_new(wake_nobody, NULL);
-    client c = {.id = 1, .thin = true};
-    queue(&c, box, MESSAGE_PICTURE, 2);
-    queue(&c, box, MESSAGE_STATE, 0);
-    queue(&c, box, MESSAGE_THIN_PICTURE, 0);
-    queue(&c, box, MESSAGE_PICTURE, 0); /* for other links */
+    c.thin = true;
+    queue(&c, MESSAGE_PICTURE, 2);
+    queue(&c, MESSAGE_STATE, 0);
+    queue(&c, MESSAGE_THIN_PICTURE, 0);
+    queue(&c, MESSAGE_PICTURE, 0); /* for other links */
     assert_int_equal(c.count, 2);
     assert_int_equal(c.queue[0]->topic, MESSAGE_STATE);
     assert_int_equal(c.queue[1]->topic, MESSAGE_THIN_PICTURE);
-    queue(&c, box, MESSAGE_PICTURE, 2);
+    queue(&c, MESSAGE_PICTURE, 2);
     assert_int_equal(c.count, 2);
     assert_int_equal(c.queue[1]->bytes[8], 2);
-    client_free(&c, box);
-    outbox_free(box);
 }
 
 static void texts_with_a_topic_replace_in_place(void **state) {
     (void)state;
-    outbox *box = outbox_new(wake_nobody, NULL);
-    client c = {.id = 1};
-    queue(&c, box, MESSAGE_INFO, 0);
-    queue(&c, box, MESSAGE_STATE, 0);
-    queue(&c, box, MESSAGE_INFO, 1);
-    queue(&c, box, MESSAGE_PLAIN, 0);
-    queue(&c, box, MESSAGE_PLAIN, 0);
+    queue(&c, MESSAGE_INFO, 0);
+    queue(&c, MESSAGE_STATE, 0);
+    queue(&c, MESSAGE_INFO, 1);
+    queue(&c, MESSAGE_PLAIN, 0);
+    queue(&c, MESSAGE_PLAIN, 0);
     assert_int_equal(c.count, 4);
     assert_int_equal(c.queue[0]->bytes[8], 1);
-    client_free(&c, box);
-    outbox_free(box);
 }
 
 /* The page forgets a state and a look that come before the volume's name. */
 static void of_another_volume_its_name_comes_first(void **state) {
     (void)state;
-    outbox *box = outbox_new(wake_nobody, NULL);
-    client c = {.id = 1};
-    queue(&c, box, MESSAGE_LOOK, 0);
-    queue(&c, box, MESSAGE_STATE, 0);
-    queue(&c, box, MESSAGE_INFO, 1);
-    queue(&c, box, MESSAGE_LOOK, 1);
-    queue(&c, box, MESSAGE_STATE, 1);
+    queue(&c, MESSAGE_LOOK, 0);
+    queue(&c, MESSAGE_STATE, 0);
+    queue(&c, MESSAGE_INFO, 1);
+    queue(&c, MESSAGE_LOOK, 1);
+    queue(&c, MESSAGE_STATE, 1);
     assert_int_equal(c.count, 3);
     assert_int_equal(c.queue[0]->topic, MESSAGE_INFO);
     assert_int_equal(c.queue[1]->topic, MESSAGE_LOOK);
     assert_int_equal(c.queue[2]->topic, MESSAGE_STATE);
     for (int i = 0; i < c.count; i++)
         assert_int_equal(c.queue[i]->bytes[8], 1);
-    client_free(&c, box);
-    outbox_free(box);
 }
 
 static void n_is_the_newest_that_a_revision_has(void **state) {
     (void)state;
-    client c = {.id = 1};
     for (uint32_t i = 1; i <= 100; i++)
         set_log_note(&c.sets, i, 10 * i);
     assert_int_equal(set_log_n(&c.sets, 1000), 100);
@@ -218,21 +213,19 @@ static void n_is_the_newest_that_a_revision_has(void **state) {
 
 static void two_pictures_are_under_way(void **state) {
     (void)state;
-    outbox *box = outbox_new(wake_nobody, NULL);
-    client c = {.id = 1};
     for (int i = 1; i <= CLIENT_UNDER_WAY; i++) {
-        queue(&c, box, MESSAGE_PICTURE, 0);
+        queue(&c, MESSAGE_PICTURE, 0);
         assert_true(client_has_more(&c));
         assert_true(client_send(&c, box));
         assert_int_equal(c.under_way, i);
     }
-    queue(&c, box, MESSAGE_PICTURE, 0);
-    queue(&c, box, MESSAGE_PICTURE, 1);
+    queue(&c, MESSAGE_PICTURE, 0);
+    queue(&c, MESSAGE_PICTURE, 1);
     assert_false(client_has_more(&c));
     int before = written.count;
     assert_true(client_send(&c, box));
     assert_int_equal(written.count, before);
-    queue(&c, box, MESSAGE_PLAIN, 0); /* which waits for no picture */
+    queue(&c, MESSAGE_PLAIN, 0); /* which waits for no picture */
     assert_true(client_has_more(&c));
     assert_true(client_send(&c, box));
     assert_int_equal(written.count, before + 1);
@@ -245,8 +238,6 @@ static void two_pictures_are_under_way(void **state) {
     for (int i = 0; i < 5; i++)
         client_acknowledge(&c, 0);
     assert_int_equal(c.under_way, 0);
-    client_free(&c, box);
-    outbox_free(box);
 }
 
 /* On a thin link: a few at a time, and the rest not at all where another
@@ -255,22 +246,21 @@ static void
 the_picture_at_rest_goes_in_parts_that_can_be_dropped(void **state) {
     (void)state;
     const size_t bytes = 5 * CLIENT_PART_BYTES + 100;
-    outbox *box = outbox_new(wake_nobody, NULL);
-    client c = {.id = 1, .webp = true, .thin = true, .blocked = 1};
-    queue_long(&c, box, MESSAGE_PICTURE, 2, FRAME_HEAD_BYTES + bytes);
+    c = (client){.id = 1, .webp = true, .thin = true, .blocked = 1};
+    queue_long(&c, MESSAGE_PICTURE, 2, FRAME_HEAD_BYTES + bytes);
     int before = written.count;
-    send_all(&c, box);
+    send_all(&c);
     assert_int_equal(written.count, before + CLIENT_PARTS_MOST);
     assert_int_equal(written.how, LWS_WRITE_BINARY);
     assert_int_equal(written.head[11], FRAME_NEXT);
     assert_int_equal(written.head[12] | written.head[13] << 8 |
                          written.head[14] << 16,
                      bytes);
-    queue(&c, box, MESSAGE_STATE, 0);
+    queue(&c, MESSAGE_STATE, 0);
     assert_false(client_has_more(&c));
     for (int i = CLIENT_PARTS_MOST; i < 6; i++) {
         client_note_part(&c);
-        send_all(&c, box);
+        send_all(&c);
     }
     assert_int_equal(written.count, before + 6 + 1); /* the state behind it */
     assert_int_equal(c.under_way, 1);
@@ -278,24 +268,20 @@ the_picture_at_rest_goes_in_parts_that_can_be_dropped(void **state) {
     for (int i = 0; i < 9; i++)
         client_note_part(&c);
 
-    queue_long(&c, box, MESSAGE_PICTURE, 2, FRAME_HEAD_BYTES + bytes);
+    queue_long(&c, MESSAGE_PICTURE, 2, FRAME_HEAD_BYTES + bytes);
     before = written.count;
     assert_true(client_send(&c, box));
     assert_int_equal(written.head[11], FRAME_FIRST);
-    queue(&c, box, MESSAGE_THIN_PICTURE, 0);
-    send_all(&c, box);
+    queue(&c, MESSAGE_THIN_PICTURE, 0);
+    send_all(&c);
     assert_int_equal(written.count, before + 2);
     assert_int_equal(written.head[11], 0);
     assert_int_equal(c.under_way, 1);
     assert_false(client_has_more(&c));
-    client_free(&c, box);
-    outbox_free(box);
 }
 
 static void a_picture_goes_in_pieces_with_the_own_n(void **state) {
     (void)state;
-    outbox *box = outbox_new(wake_nobody, NULL);
-    client c = {.id = 1};
     outgoing *p = outgoing_new(2 * CLIENT_PIECE_BYTES + 100);
     assert_non_null(p);
     memset(p->bytes, 0, p->length);
@@ -313,84 +299,71 @@ static void a_picture_goes_in_pieces_with_the_own_n(void **state) {
         assert_int_equal(written.how, wanted[i]);
         if (i == 0)
             assert_int_equal(written.head[4], 42);
-        queue(&c, box, MESSAGE_PLAIN, 0); /* which comes between no pieces */
+        queue(&c, MESSAGE_PLAIN, 0); /* which comes between no pieces */
     }
     assert_int_equal(written.all, p->length);
     assert_int_equal(written.length, 100);
     assert_int_equal(p->bytes[4], 0); /* others share it */
     assert_null(c.sending);
     outgoing_release(box, p);
-    client_free(&c, box);
-    outbox_free(box);
 }
 
 static void a_link_is_thin_while_pictures_wait(void **state) {
     (void)state;
-    outbox *box = outbox_new(wake_nobody, NULL);
-    client c = {.id = 1, .webp = true}, plain = {.id = 2};
+    client plain = {.id = 2};
+    c.webp = true;
     int changes = 0;
     for (int i = 0; i < 10; i++) {
-        queue(&c, box, c.thin ? MESSAGE_THIN_PICTURE : MESSAGE_PICTURE, 0);
-        queue(&plain, box, MESSAGE_PICTURE, 0);
+        queue(&c, c.thin ? MESSAGE_THIN_PICTURE : MESSAGE_PICTURE, 0);
+        queue(&plain, MESSAGE_PICTURE, 0);
         changes += client_acknowledge(&c, 0);
         assert_false(client_acknowledge(&plain, 0)); /* it cannot show WebP */
     }
     assert_true(c.thin);
-    send_all(&c, box);
+    send_all(&c);
     for (int i = 0; i < 40; i++)
         changes += client_acknowledge(&c, 0);
     assert_false(c.thin);
     assert_int_equal(changes, 2);
-    client_free(&c, box);
     client_free(&plain, box);
-    outbox_free(box);
 }
 
 /* Trips of 60 ms, of which the page takes so many to paint; another picture
  * waits at the end of each. */
-static void make_trips(client *c, outbox *box, int painted) {
+static void make_trips(int painted) {
     for (int i = 0; i < 40; i++) {
-        message_topic topic = c->thin ? MESSAGE_THIN_PICTURE : MESSAGE_PICTURE;
-        queue(c, box, topic, 0);
-        send_all(c, box);
+        message_topic topic = c.thin ? MESSAGE_THIN_PICTURE : MESSAGE_PICTURE;
+        queue(&c, topic, 0);
+        send_all(&c);
         now += 60000;
-        queue(c, box, topic, 0);
-        client_acknowledge(c, 1e-3 * painted);
+        queue(&c, topic, 0);
+        client_acknowledge(&c, 1e-3 * painted);
     }
 }
 
 static void a_slow_page_has_no_thin_link(void **state) {
     (void)state;
-    outbox *box = outbox_new(wake_nobody, NULL);
-    client c = {.id = 1, .webp = true};
-    make_trips(&c, box, 40);
+    c.webp = true;
+    make_trips(40);
     assert_false(c.thin);
-    make_trips(&c, box, 10);
+    make_trips(10);
     assert_true(c.thin);
-    make_trips(&c, box, 40);
+    make_trips(40);
     assert_false(c.thin);
-    client_free(&c, box);
-    outbox_free(box);
 }
 
 static void too_much_that_waits_is_noted(void **state) {
     (void)state;
-    outbox *box = outbox_new(wake_nobody, NULL);
-    client c = {.id = 1};
     for (int i = 0; i < CLIENT_QUEUE_MOST; i++)
-        queue(&c, box, MESSAGE_PLAIN, 0);
+        queue(&c, MESSAGE_PLAIN, 0);
     assert_false(c.too_slow);
-    queue(&c, box, MESSAGE_PLAIN, 0);
+    queue(&c, MESSAGE_PLAIN, 0);
     assert_true(c.too_slow);
     assert_int_equal(c.count, CLIENT_QUEUE_MOST);
-    client_free(&c, box);
-    outbox_free(box);
 }
 
 static void a_message_in_pieces_has_a_limit(void **state) {
     (void)state;
-    outbox *box = outbox_new(wake_nobody, NULL);
-    client c = {.id = 1};
     static const char piece[MESSAGE_BYTES / 2];
     assert_int_equal(client_collect(&c, "ab", 2, false), 0);
     assert_int_equal(client_collect(&c, "cd", 2, true), 1);
@@ -400,27 +373,28 @@ static void a_message_in_pieces_has_a_limit(void **state) {
     assert_int_equal(client_collect(&c, piece, sizeof piece, false), 0);
     assert_int_equal(client_collect(&c, piece, sizeof piece, false), 0);
     assert_int_equal(client_collect(&c, "x", 1, true), -1);
-    client_free(&c, box);
-    outbox_free(box);
 }
+
+#define TEST(name) \
+    cmocka_unit_test_setup_teardown(name, begin_client, end_client)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(of_pictures_the_newest_waits),
-        cmocka_unit_test(texts_with_a_topic_replace_in_place),
-        cmocka_unit_test(of_another_volume_its_name_comes_first),
-        cmocka_unit_test(n_is_the_newest_that_a_revision_has),
-        cmocka_unit_test(two_pictures_are_under_way),
-        cmocka_unit_test(the_picture_at_rest_goes_in_parts_that_can_be_dropped),
-        cmocka_unit_test(a_picture_goes_in_pieces_with_the_own_n),
-        cmocka_unit_test(a_link_is_thin_while_pictures_wait),
-        cmocka_unit_test(a_slow_page_has_no_thin_link),
-        cmocka_unit_test(too_much_that_waits_is_noted),
-        cmocka_unit_test(a_message_in_pieces_has_a_limit),
-        cmocka_unit_test(quality_follows_the_trips),
-        cmocka_unit_test(quality_goes_step_by_step_and_stays),
-        cmocka_unit_test(pictures_at_rest_do_not_count),
-        cmocka_unit_test(a_change_of_quality_is_told),
+        TEST(of_pictures_the_newest_waits),
+        TEST(texts_with_a_topic_replace_in_place),
+        TEST(of_another_volume_its_name_comes_first),
+        TEST(n_is_the_newest_that_a_revision_has),
+        TEST(two_pictures_are_under_way),
+        TEST(the_picture_at_rest_goes_in_parts_that_can_be_dropped),
+        TEST(a_picture_goes_in_pieces_with_the_own_n),
+        TEST(a_link_is_thin_while_pictures_wait),
+        TEST(a_slow_page_has_no_thin_link),
+        TEST(too_much_that_waits_is_noted),
+        TEST(a_message_in_pieces_has_a_limit),
+        TEST(quality_follows_the_trips),
+        TEST(quality_goes_step_by_step_and_stays),
+        TEST(pictures_at_rest_do_not_count),
+        TEST(a_change_of_quality_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

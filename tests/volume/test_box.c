@@ -476,36 +476,20 @@ static void a_file_cut_behind_the_box_is_refused_all_the_same(void **state) {
                     SNOW_STATUS_BAD_INPUT, "692", 70000);
 }
 
-static int begin(void **state) {
-    support_files *files = malloc(sizeof *files);
-    assert_non_null(files);
-    support_files_begin(files);
-    *state = files;
-    return 0;
-}
-
-static int end(void **state) {
-    support_files_end(*state);
-    free(*state);
-    return 0;
-}
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        TEST(a_box_equals_that_of_the_whole),
-        TEST(a_box_of_numbers_in_text_equals_that_of_the_whole),
-        TEST(a_box_reaches_over_the_files_of_a_series),
-        TEST(files_outside_the_box_are_not_opened),
-        TEST(a_box_of_a_phantom_equals_that_of_the_whole),
-        TEST(the_box_moves_by_the_spacing_that_was_given),
-        TEST(a_box_outside_the_volume_is_refused_with_its_sizes),
-        TEST(little_more_than_the_box_is_read_of_a_huge_file),
-        TEST(near_rows_are_read_in_one_go_and_far_slices_are_not),
-        TEST(inspect_reads_the_header_alone),
-        TEST(of_packed_data_only_the_box_is_kept),
-        TEST(a_file_cut_behind_the_box_is_refused_all_the_same),
+        SUPPORT_TEST(a_box_equals_that_of_the_whole),
+        SUPPORT_TEST(a_box_of_numbers_in_text_equals_that_of_the_whole),
+        SUPPORT_TEST(a_box_reaches_over_the_files_of_a_series),
+        SUPPORT_TEST(files_outside_the_box_are_not_opened),
+        SUPPORT_TEST(a_box_of_a_phantom_equals_that_of_the_whole),
+        SUPPORT_TEST(the_box_moves_by_the_spacing_that_was_given),
+        SUPPORT_TEST(a_box_outside_the_volume_is_refused_with_its_sizes),
+        SUPPORT_TEST(little_more_than_the_box_is_read_of_a_huge_file),
+        SUPPORT_TEST(near_rows_are_read_in_one_go_and_far_slices_are_not),
+        SUPPORT_TEST(inspect_reads_the_header_alone),
+        SUPPORT_TEST(of_packed_data_only_the_box_is_kept),
+        SUPPORT_TEST(a_file_cut_behind_the_box_is_refused_all_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -322,40 +322,24 @@ static void each_allocation_may_fail(void **state) {
             assert_true(fail_each_allocation(paths[i], once) >= 5);
 }
 
-static int begin(void **state) {
-    support_files *files = malloc(sizeof *files);
-    assert_non_null(files);
-    support_files_begin(files);
-    *state = files;
-    return 0;
-}
-
-static int end(void **state) {
-    support_files_end(*state);
-    free(*state);
-    return 0;
-}
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(types_know_their_names_and_sizes),
         cmocka_unit_test(bytes_swap_in_every_width),
         cmocka_unit_test(sizes_that_overflow_are_no_count),
-        TEST(impossible_headers_are_refused_before_any_allocation),
+        SUPPORT_TEST(impossible_headers_are_refused_before_any_allocation),
         cmocka_unit_test(a_matrix_of_flat_axes_has_no_inverse),
-        TEST(a_shared_volume_gets_its_defaults),
-        TEST(spacing_is_the_length_of_the_columns),
-        TEST(figures_are_right_for_every_type),
-        TEST(only_finite_values_are_measured),
-        TEST(a_histogram_counts_both_ends),
+        SUPPORT_TEST(a_shared_volume_gets_its_defaults),
+        SUPPORT_TEST(spacing_is_the_length_of_the_columns),
+        SUPPORT_TEST(figures_are_right_for_every_type),
+        SUPPORT_TEST(only_finite_values_are_measured),
+        SUPPORT_TEST(a_histogram_counts_both_ends),
         cmocka_unit_test(formats_are_listed),
-        TEST(an_empty_file_is_refused_by_name),
-        TEST(a_missing_file_is_refused_by_name),
-        TEST(a_phantom_has_its_own_type),
-        TEST(a_spacing_that_makes_no_space_is_refused),
-        TEST(each_allocation_may_fail),
+        SUPPORT_TEST(an_empty_file_is_refused_by_name),
+        SUPPORT_TEST(a_missing_file_is_refused_by_name),
+        SUPPORT_TEST(a_phantom_has_its_own_type),
+        SUPPORT_TEST(a_spacing_that_makes_no_space_is_refused),
+        SUPPORT_TEST(each_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
