@@ -7,18 +7,14 @@
 // page is turned, sliced, and gets states.  Of each there are then in FOLDER the picture
 // at rest and the command, NAME-rest.png and NAME.txt, of the last one a screenshot too.
 import {writeFileSync} from 'node:fs';
+import {SELDOM, browser, folder, keep, pages, settled} from './browser.mjs';
 
-const [playwright, chromium, folder, pages] = process.argv.slice(2);
-const {chromium: browsers} = await import(playwright);
 let wrong = 0, name, page, said, asked;
 
 function check(what, good, why = '') {
     console.log(good ? `ok     ${name}: ${what}` : `FAILED ${name}: ${what}: ${why}`);
     wrong += good ? 0 : 1;
 }
-
-const browser = await browsers.launch({executablePath: chromium,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-software-rasterizer']});
 
 async function open(url) {
     page = await browser.newPage({viewport: {width: 800, height: 500}});
@@ -33,11 +29,7 @@ async function open(url) {
     await rest();
 }
 
-const SELDOM = {polling: 20}; // ms: for each frame that is looked at, the page draws one
-const rest = () => page.waitForFunction(() => {
-    const {engine, page: of} = window.snowglass ?? {};
-    return of?.rest && !engine.waiting && !engine.sentAt.size;
-}, null, SELDOM);
+const rest = () => settled(page);
 const slicesRest = () => page.waitForFunction(() => {
     const {panes} = window.snowglass.slices;
     return panes.length === 3 && panes.every(pane => pane.exact && !pane.busy && pane.file);
@@ -124,19 +116,6 @@ async function refusal(damaged) {
     await rest();
 }
 
-/** The picture at rest, in base64, and its command. */
-async function keep() {
-    const picture = await page.evaluate(() => new Promise(done => {
-        const reader = new FileReader();
-        reader.onload = () => done(reader.result.split(',')[1]);
-        reader.readAsDataURL(window.snowglass.page.rest);
-    }));
-    writeFileSync(`${folder}/${name}-rest.png`, Buffer.from(picture, 'base64'));
-    await page.locator('button', {hasText: 'Command'}).first().click();
-    writeFileSync(`${folder}/${name}.txt`, await page.locator('dialog textarea').inputValue());
-    await page.keyboard.press('Escape');
-}
-
 async function end(url) {
     const {helpers, threads, isolated} = await page.evaluate(() => ({
         isolated: crossOriginIsolated,
@@ -156,7 +135,7 @@ async function end(url) {
     await page.close();
 }
 
-for (const {url, volumes, damaged} of JSON.parse(pages)) {
+for (const {url, volumes, damaged} of pages) {
     await open(url);
     for (const [i, [each, ...files]] of volumes.entries()) {
         name = each;
@@ -172,7 +151,7 @@ for (const {url, volumes, damaged} of JSON.parse(pages)) {
             await rest();
             await states();
         }
-        await keep();
+        await keep(page, name);
     }
     if (damaged)
         await refusal(damaged);

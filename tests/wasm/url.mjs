@@ -9,12 +9,8 @@
 // then of each NAME-rest.png and NAME.txt, as of page.mjs, and in results.json what was said,
 // and what the page asked for.
 import {writeFileSync} from 'node:fs';
+import {SELDOM, browser, folder, keep, pages, settled} from './browser.mjs';
 
-const [playwright, chromium, folder, pages] = process.argv.slice(2);
-const {chromium: browsers} = await import(playwright);
-const browser = await browsers.launch({executablePath: chromium,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-software-rasterizer']});
-const SELDOM = {polling: 20}; // ms
 const results = {};
 let page, wrong = 0;
 
@@ -23,24 +19,8 @@ function fail(text) {
     wrong++;
 }
 
-const rest = () => page.waitForFunction(() => {
-    const {engine, page: of} = window.snowglass ?? {};
-    return of?.rest && !engine.waiting && !engine.sentAt.size;
-}, null, SELDOM);
+const rest = () => settled(page);
 const said = () => page.evaluate(() => document.querySelector('.said')?.textContent);
-
-async function keep(name) {
-    await rest();
-    const picture = await page.evaluate(() => new Promise(done => {
-        const reader = new FileReader();
-        reader.onload = () => done(reader.result.split(',')[1]);
-        reader.readAsDataURL(window.snowglass.page.rest);
-    }));
-    writeFileSync(`${folder}/${name}-rest.png`, Buffer.from(picture, 'base64'));
-    await page.locator('button', {hasText: 'Command'}).first().click();
-    writeFileSync(`${folder}/${name}.txt`, await page.locator('dialog[open] textarea').inputValue());
-    await page.keyboard.press('Escape');
-}
 
 /** By the keyboard, as without a mouse. */
 async function type(name, address) {
@@ -88,20 +68,20 @@ async function open({name, address, says, time}) {
         await page.waitForFunction(done, says, {...SELDOM, timeout: 60000}).catch(error =>
             fail(`${name}: ${error.message}`));
     if (!says)
-        await keep(name);
+        await keep(page, name);
     else if (name === 'broken')
         await page.screenshot({path: `${folder}/refused.png`});
     const lines = await page.evaluate(() => window.lines);
     if (time !== undefined) {
         await page.evaluate(step => window.snowglass.store.set({time: step}), time);
-        await keep(`${name}-time`);
+        await keep(page, `${name}-time`);
     }
     results[name] = {said: address === undefined ? [...lines, await said()] : lines,
         shown: await page.evaluate(() => window.snowglass?.page.info?.name),
         search: await page.evaluate(() => location.search)};
 }
 
-for (const {url, cases} of JSON.parse(pages)) {
+for (const {url, cases} of pages) {
     page = await browser.newPage({viewport: {width: 640, height: 400}});
     page.setDefaultTimeout(300000);
     page.on('pageerror', error => fail(`${url}: ${error}`));

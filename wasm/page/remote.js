@@ -57,10 +57,10 @@ function parsed(bytes) {
 }
 
 /** The files below a folder of a server.  `base` ends with a slash, `query` is put behind
- * each name; `path` is what the user has named.  `tell` gets the bytes that came. */
+ * each name; `path` is what the user has named.  `onFetch` hears of each answer. */
 class Remote {
-    constructor({base, query, path}, tell = () => {}) {
-        Object.assign(this, {base, query, path, tell});
+    constructor({base, query, path}, onFetch = () => {}) {
+        Object.assign(this, {base, query, path, onFetch});
         this.files = new Map(); // of names: {number, bytes, size, blocks}, or null: not there
         this.list = []; // the same by number
         this.held = new Map(); // voxels that are kept, the oldest first
@@ -69,7 +69,7 @@ class Remote {
         this.numbered = new Set(); // folders of images that have numbers
         this.sharded = []; // folders of arrays whose files are read by the part
         this.heard = false; // the server has answered
-        this.tells = false; // it has said of a file that there is none
+        this.denied = false; // it has said of a file that there is none
         this.whole = false; // it sends no parts
         this.fetched = 0; // bytes, and files
         this.count = 0;
@@ -98,15 +98,15 @@ class Remote {
     /** An answer; of a server that is busy the second one. */
     ask(url, range) {
         let answer = this.send('GET', url, range);
-        if (BUSY.includes(answer.status) || (!answer.status && this.heard && this.tells))
+        if (BUSY.includes(answer.status) || (!answer.status && this.heard && this.denied))
             answer = this.send('GET', url, range);
         const {status, response, statusText = ''} = answer;
         this.heard ||= status > 0;
-        this.tells ||= status === 404 || status === 410 || status === 403;
+        this.denied ||= status === 404 || status === 410 || status === 403;
         const came = status === 200 || status === 206;
         if (came) {
             this.fetched += response.byteLength;
-            this.tell(this);
+            this.onFetch(this);
         }
         return {status, statusText, bytes: came ? response : null, range: came && answer.getResponseHeader('Content-Range')};
     }
@@ -122,7 +122,7 @@ class Remote {
     /** A whole file, or null: it is not there. */
     get(name) {
         const url = this.url(name), answer = this.ask(url), {status, bytes} = answer, probed = METADATA.test(name);
-        if (status === 404 || status === 410 || (probed && (status === 403 || (!status && !this.tells)))) {
+        if (status === 404 || status === 410 || (probed && (status === 403 || (!status && !this.denied)))) {
             this.missed = this.fault(url, answer);
             return null;
         }
@@ -190,7 +190,7 @@ class Remote {
         this.store ??= !alone && MARKS.some(mark => this.file(`${this.path}/${mark}`));
         if (!named || this.store)
             return this.store;
-        throw !this.tells || / 40[13]/.test(this.missed.message) ? this.missed : new Fault(`${shown(this.url(this.path))} has ` +
+        throw !this.denied || / 40[13]/.test(this.missed.message) ? this.missed : new Fault(`${shown(this.url(this.path))} has ` +
             `no ${MARKS.slice(0, -1).join(', ')} or ${MARKS.at(-1)}: there is no Zarr array or group; check the address`);
     }
 

@@ -22,9 +22,9 @@ const SELDOM = 100; // ms between two lines about what is fetched
 
 /** The files by their paths, and what the engine asks of them. */
 class Files {
-    constructor(list, tell) {
+    constructor(list, onFetch) {
         this.list = list;
-        this.remote = list[0]?.base ? new far.Remote(list[0], tell) : null;
+        this.remote = list[0]?.base ? new far.Remote(list[0], onFetch) : null;
         this.numbers = new Map(list.map(({name}, i) => [name, i]));
         this.reader = typeof FileReaderSync === 'undefined' ? null : new FileReaderSync();
         this.folders = new Map(); // the names in each
@@ -210,9 +210,9 @@ function shared(list) {
     });
 }
 
-/** The module with a memory, as `exports`.  `tell` hears of what is fetched. */
-function instance(module, memory, list, tell) {
-    const of = {memory, files: new Files(list, tell)};
+/** The module with a memory, as `exports`.  `onFetch` hears of each answer of a server. */
+function instance(module, memory, list, onFetch) {
+    const of = {memory, files: new Files(list, onFetch)};
     const {env, wasi_snapshot_preview1: wasi} = host(of, of.files);
     const imports = {env: {}, wasi_snapshot_preview1: {}};
     for (const {module: from, name, kind} of WebAssembly.Module.imports(module))
@@ -231,12 +231,12 @@ function help({module, memory, files, stack, number}) {
 
 /** The engine with its files open, as functions of texts and bytes.  `share` gets what
  * each thread but this one begins with; without it there are no others. */
-async function begin(wasm, list, threads = 1, share = null, tell = null) {
+async function begin(wasm, list, threads = 1, share = null, onFetch = null) {
     const memory = room(share);
     const among = memory.buffer instanceof ArrayBuffer ? null : share;
     const files = among ? shared(list) : list;
     const module = await WebAssembly.compile(among ? wasm : unshared(wasm));
-    const of = instance(module, memory, files, tell ?? (() => {}));
+    const of = instance(module, memory, files, onFetch ?? (() => {}));
     of.exports._initialize();
     for (let number = 0; among && number < threads - 1; number++) {
         const stack = of.exports.engine_add_helper();
@@ -312,7 +312,7 @@ function serve(scope) {
     };
     channel.port1.onmessage = work;
     let told = performance.now();
-    const tell = ({count, fetched}) => {
+    const reportFetched = ({count, fetched}) => {
         const now = performance.now();
         if (now - told < SELDOM)
             return;
@@ -322,7 +322,7 @@ function serve(scope) {
     const open = async ({wasm, files, path, recipe}) => {
         try {
             const made = await begin(wasm, files, Math.min(navigator.hardwareConcurrency, THREADS_MOST),
-                scope.crossOriginIsolated && (what => scope.postMessage(what)), tell);
+                scope.crossOriginIsolated && (what => scope.postMessage(what)), reportFetched);
             const good = made.open(path, recipe);
             engine = made;
             deliver();
