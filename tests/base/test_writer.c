@@ -6,7 +6,6 @@
 #include "support/failing.h"
 #include "support/folder.h"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -27,17 +26,6 @@ static int set_up(void **state) {
     snprintf(f->path, sizeof f->path, "%s/out.bin", f->folder);
     *state = f;
     return 0;
-}
-
-/* Files in the folder, hidden ones included. */
-static int count_files(const char *folder) {
-    DIR *listing = opendir(folder);
-    assert_non_null(listing);
-    int count = -2; /* . and .. */
-    while (readdir(listing))
-        count++;
-    closedir(listing);
-    return count;
 }
 
 static int tear_down(void **state) {
@@ -99,7 +87,7 @@ static void a_committed_file_has_its_bytes_and_leaves_no_other(void **state) {
     assert_int_equal(at, sizeof bytes);
     assert_int_not_equal(access(f->path, F_OK), 0);
     assert_int_equal(snow_writer_commit(writer), SNOW_STATUS_OK);
-    assert_int_equal(count_files(f->folder), 1);
+    assert_int_equal(support_folder_files(f->folder), 1);
     static unsigned char back[sizeof bytes + 1];
     FILE *file = fopen(f->path, "rb");
     assert_int_equal(fread(back, 1, sizeof back, file), sizeof bytes);
@@ -142,7 +130,7 @@ static void an_existing_file_is_kept_unless_overwriting(void **state) {
     assert_text(f->path, "old");
     assert_int_equal(write_text(f, f->path, true, "new"), SNOW_STATUS_OK);
     assert_text(f->path, "new");
-    assert_int_equal(count_files(f->folder), 1);
+    assert_int_equal(support_folder_files(f->folder), 1);
 }
 
 static void a_file_that_appears_meanwhile_is_kept_or_replaced(void **state) {
@@ -160,7 +148,7 @@ static void a_file_that_appears_meanwhile_is_kept_or_replaced(void **state) {
         if (!overwrite)
             assert_message(f, "exists");
         assert_text(f->path, overwrite ? "mine" : "theirs");
-        assert_int_equal(count_files(f->folder), 1);
+        assert_int_equal(support_folder_files(f->folder), 1);
     }
 }
 
@@ -195,7 +183,7 @@ static void a_writer_that_is_killed_leaves_nothing(void **state) {
     assert_int_equal(waitpid(child, &end, 0), child);
     assert_true(WIFSIGNALED(end) && WTERMSIG(end) == SIGKILL);
     assert_int_not_equal(access(f->path, F_OK), 0);
-    assert_int_equal(count_files(f->folder), are_named(f->folder));
+    assert_int_equal(support_folder_files(f->folder), are_named(f->folder));
 }
 
 static void an_abandoned_file_leaves_nothing(void **state) {
@@ -208,7 +196,7 @@ static void an_abandoned_file_leaves_nothing(void **state) {
     snow_writer_abandon(writer);
     snow_writer_abandon(NULL);
     assert_text(f->path, "old");
-    assert_int_equal(count_files(f->folder), 1);
+    assert_int_equal(support_folder_files(f->folder), 1);
 }
 
 static void a_link_stays_a_link_and_its_target_is_replaced(void **state) {
@@ -239,7 +227,7 @@ static void folders_and_missing_folders_are_refused(void **state) {
     char slash[160];
     snprintf(slash, sizeof slash, "%s/new/", f->folder);
     assert_int_equal(write_text(f, slash, false, "x"), SNOW_STATUS_BAD_OUTPUT);
-    assert_int_equal(count_files(f->folder), 0);
+    assert_int_equal(support_folder_files(f->folder), 0);
 }
 
 static void a_name_of_the_greatest_length_can_be_written(void **state) {
@@ -260,7 +248,7 @@ static void a_name_that_is_too_long_is_refused_at_once(void **state) {
     assert_int_equal(snow_writer_open(f->context, path, false, &writer),
                      SNOW_STATUS_BAD_OUTPUT);
     assert_message(f, "choose a shorter name");
-    assert_int_equal(count_files(f->folder), 0);
+    assert_int_equal(support_folder_files(f->folder), 0);
 }
 
 static void devices_are_written_through(void **state) {
@@ -309,7 +297,7 @@ static void a_file_over_the_size_limit_leaves_nothing(void **state) {
     assert_int_equal(first, SNOW_STATUS_OK);
     assert_int_equal(second, SNOW_STATUS_BAD_OUTPUT);
     assert_int_equal(committed, SNOW_STATUS_BAD_OUTPUT);
-    assert_int_equal(count_files(f->folder), 0);
+    assert_int_equal(support_folder_files(f->folder), 0);
 }
 
 static void a_dash_is_standard_output(void **state) {
@@ -346,7 +334,7 @@ static void no_memory_leaves_nothing(void **state) {
             assert_null(writer);
         }
         assert_int_equal(snow_context_bytes(context), 0);
-        assert_int_equal(count_files(f->folder), 0);
+        assert_int_equal(support_folder_files(f->folder), 0);
         snow_context_free(context);
     }
     assert_true(successes > 0 && successes < 6);

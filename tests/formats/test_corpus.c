@@ -3,8 +3,7 @@
  * with a message, nothing held, no crash. */
 #include "formats/format.h"
 #include "support/failing.h"
-
-#include <dirent.h>
+#include "support/files.h"
 
 /* Opens the file; returns the allocations made. */
 static long open_failing(const char *path, const char *name, const void *bytes,
@@ -49,23 +48,6 @@ static void check_file(const char *path, const char *name) {
     }
 }
 
-static void check_corpus(const char *subject, const char *name) {
-    char folder[512], path[1024];
-    snprintf(folder, sizeof folder, "%s/%s", SNOW_CORPUS, subject);
-    DIR *stream = opendir(folder);
-    assert_non_null(stream);
-    int files = 0;
-    for (const struct dirent *entry; (entry = readdir(stream));) {
-        if (*entry->d_name == '.')
-            continue;
-        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-        check_file(path, name);
-        files++;
-    }
-    closedir(stream);
-    assert_true(files > 5);
-}
-
 static void no_reader_is_lost_without_memory(void **state) {
     (void)state;
     static const char *const subjects[][2] = {
@@ -81,7 +63,7 @@ static void no_reader_is_lost_without_memory(void **state) {
     };
     const size_t count = sizeof subjects / sizeof *subjects;
     for (size_t i = 0; i < count; i++)
-        check_corpus(subjects[i][0], subjects[i][1]);
+        support_each_of_corpus(subjects[i][0], subjects[i][1], check_file);
     /* Those, and four that no single file without options shows: DICOM (its
      * library allocates for itself), Zarr and AMReX (folders) and raw. */
     if (snow_format_name(count + 4 - 1) == NULL ||

@@ -145,7 +145,7 @@ static void options_that_cannot_be_heeded_are_refused(void **state) {
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         assert_int_equal(snow_image_save(image, path, &wrong[i]),
                          SNOW_STATUS_BAD_USAGE);
-    assert_int_equal(support_image_files(f), 0);
+    assert_int_equal(support_folder_files(f->folder), 0);
     snow_image_free(image);
 }
 
@@ -171,7 +171,7 @@ static void an_existing_file_is_kept_unless_told(void **state) {
         file = support_read_file(path);
         assert_true(file.size > 8);
         free(file.bytes);
-        assert_int_equal(support_image_files(f), 1);
+        assert_int_equal(support_folder_files(f->folder), 1);
     }
     snow_image_free(image);
 }
@@ -209,7 +209,7 @@ static void checking_a_path_leaves_nothing(void **state) {
                      SNOW_STATUS_OK);
     assert_int_equal(snow_image_check_path(f->context, "-", false),
                      SNOW_STATUS_OK);
-    assert_int_equal(support_image_files(f), 0);
+    assert_int_equal(support_folder_files(f->folder), 0);
 }
 
 /* Saves to standard output while that is another file. */
@@ -319,7 +319,7 @@ static bool survive_failure(image_fixture *f, const char *path, int64_t n,
     assert_int_equal(snow_context_bytes(context), 0);
     snow_context_free(context);
     unlink(path);
-    assert_int_equal(support_image_files(f), 0);
+    assert_int_equal(support_folder_files(f->folder), 0);
     return failed;
 }
 

@@ -10,23 +10,6 @@
 #include <snowglass/overlay.h>
 #include <string.h>
 
-/* A patient whose voxels lie as given. */
-static snow_volume_info patient(void) {
-    return (snow_volume_info){
-        .size = sizeof(snow_volume_info),
-        .dims = {20, 30, 40},
-        .matrix = {{-1, 0, 0, 3}, {0, 2, 0, 4}, {0, 0, 1, 5}, {0, 0, 0, 1}},
-        .spacing = {1, 2, 1},
-        .medical = true,
-        .unit = "mm"};
-}
-
-static snow_view view_of(snow_context *context, const char *name) {
-    snow_view view = {.size = sizeof view};
-    assert_int_equal(snow_view_from_name(context, name, &view), SNOW_STATUS_OK);
-    return view;
-}
-
 /* --- letters -------------------------------------------------------------- */
 
 static void letters_of_named_views_are_those_of_radiology(void **state) {
@@ -37,11 +20,11 @@ static void letters_of_named_views_are_those_of_radiology(void **state) {
         {"superior", "L", "R", "A", "P"}, {"inferior", "R", "L", "A", "P"},
         {"iso", "RP", "LA", "S", "I"}};
     image_fixture *f = *state;
-    snow_volume_info info = patient();
+    snow_volume_info info = support_patient();
     for (size_t n = 0; n < sizeof table / sizeof *table; n++)
         for (int eye = 0; eye < 2; eye++) {
             char letters[4][4];
-            snow_view view = view_of(f->context, table[n][0]);
+            snow_view view = support_view(f->context, table[n][0]);
             view.fov = eye ? 40 : 0;
             assert_int_equal(
                 snow_view_orientation(f->context, &info, &view, letters),
@@ -62,10 +45,10 @@ static void letters_turn_with_the_camera(void **state) {
         {135, 0, 0, {"LA", "RP", "S", "I"}}, {0, 30, 0, {"R", "L", "SP", "IA"}},
         {0, 0, 90, {"S", "I", "L", "R"}},    {0, 0, 180, {"L", "R", "I", "S"}}};
     image_fixture *f = *state;
-    snow_volume_info info = patient();
+    snow_volume_info info = support_patient();
     for (size_t n = 0; n < sizeof table / sizeof *table; n++) {
         char letters[4][4];
-        snow_view view = view_of(f->context, "anterior");
+        snow_view view = support_view(f->context, "anterior");
         view.azimuth = table[n].azimuth;
         view.elevation = table[n].elevation;
         view.roll = table[n].roll;
@@ -86,11 +69,11 @@ static void planes_of_a_patient_are_seen_as_radiologists_do(void **state) {
                   {"front", "RLSI"}, {"back", "LRSI"},    {"top", "LRAP"},
                   {"bottom", "RLAP"}};
     image_fixture *f = *state;
-    snow_volume_info info = patient();
+    snow_volume_info info = support_patient();
     for (size_t n = 0; n < sizeof planes / sizeof *planes; n++) {
         char letters[4][4];
         snow_view view =
-            view_of(f->context, snow_view_name_for(&info, planes[n].name));
+            support_view(f->context, snow_view_name_for(&info, planes[n].name));
         assert_int_equal(
             snow_view_orientation(f->context, &info, &view, letters),
             SNOW_STATUS_OK);
@@ -106,10 +89,10 @@ static void a_step_along_a_letter_goes_to_its_edge(void **state) {
     static const char names[] = "RLAPSI";
     image_fixture *f = *state;
     uint64_t random = 5;
-    reference_scene scene = {.info = patient()};
+    reference_scene scene = {.info = support_patient()};
     for (int n = 0; n < 300; n++) {
         char letters[4][4];
-        scene.view = view_of(f->context, snow_view_name((size_t)n % 13));
+        scene.view = support_view(f->context, snow_view_name((size_t)n % 13));
         scene.view.azimuth = (double)(support_random(&random) % 3600) / 10;
         scene.view.elevation = (double)(support_random(&random) % 1800) / 10;
         scene.view.roll = (double)(support_random(&random) % 3600) / 10;
@@ -143,8 +126,8 @@ static void a_step_along_a_letter_goes_to_its_edge(void **state) {
 
 static void what_is_no_patient_has_no_letters(void **state) {
     image_fixture *f = *state;
-    snow_volume_info info = patient();
-    snow_view view = view_of(f->context, "iso");
+    snow_volume_info info = support_patient();
+    snow_view view = support_view(f->context, "iso");
     char letters[4][4];
     info.medical = false;
     assert_int_equal(snow_view_orientation(f->context, &info, &view, letters),
@@ -157,13 +140,6 @@ static void what_is_no_patient_has_no_letters(void **state) {
 }
 
 /* --- shapes --------------------------------------------------------------- */
-
-static snow_overlay *overlay_of(snow_context *context, int width, int height) {
-    snow_overlay *overlay = NULL;
-    assert_int_equal(snow_overlay_new(context, width, height, &overlay),
-                     SNOW_STATUS_OK);
-    return overlay;
-}
 
 /* The overlay alone: width * height * 4 floats; free with free(). */
 static float *draw_alone(const snow_overlay *overlay, int piece) {
@@ -186,7 +162,7 @@ static void every_character_is_drawn_in_its_box(void **state) {
         for (int code = 33; code < 128; code++) {
             const char text[2] = {(char)code, 0};
             int side = (int)(4 * height);
-            snow_overlay *overlay = overlay_of(f->context, side, side);
+            snow_overlay *overlay = support_overlay(f->context, side, side);
             double width = height * snow_font_width(text);
             assert_int_equal(
                 snow_overlay_text(overlay, height, height, 0, 0, height, text),
@@ -218,7 +194,7 @@ static void letters_are_told_apart(void **state) {
     size_t count = sizeof names - 1;
     for (size_t n = 0; n < count; n++) {
         const char text[2] = {names[n], 0};
-        snow_overlay *overlay = overlay_of(f->context, 20, 20);
+        snow_overlay *overlay = support_overlay(f->context, 20, 20);
         assert_int_equal(snow_overlay_text(overlay, 5, 5, 0, 0, 9, text),
                          SNOW_STATUS_OK);
         pixels[n] = draw_alone(overlay, 20);
@@ -237,9 +213,9 @@ static void letters_are_told_apart(void **state) {
 
 static void pieces_of_rows_are_the_row(void **state) {
     image_fixture *f = *state;
-    snow_overlay *overlay = overlay_of(f->context, 700, 130);
-    snow_volume_info info = patient();
-    snow_view view = view_of(f->context, "iso");
+    snow_overlay *overlay = support_overlay(f->context, 700, 130);
+    snow_volume_info info = support_patient();
+    snow_view view = support_view(f->context, "iso");
     view.width = 700, view.height = 130;
     assert_int_equal(snow_overlay_orientation(overlay, &info, &view),
                      SNOW_STATUS_OK);
@@ -260,7 +236,7 @@ static void letters_stand_out_on_any_background(void **state) {
     for (int side = 128; side <= 4096; side *= 2)
         for (int grey = 0; grey <= 21; grey++) {
             bool light = grey > 10;
-            snow_overlay *overlay = overlay_of(f->context, side, 64);
+            snow_overlay *overlay = support_overlay(f->context, side, 64);
             double height = fmax(9, 0.036 * side);
             assert_int_equal(
                 snow_overlay_text(overlay, height, 2, 0, 0, height, "L"),
@@ -285,7 +261,7 @@ static void letters_stand_out_on_any_background(void **state) {
 static void draw_on(image_fixture *f, double grey, bool flat, float *dark,
                     float *bright) {
     snow_image *image = support_blank(f->context, 60, 60, 2);
-    snow_overlay *overlay = overlay_of(f->context, 60, 60);
+    snow_overlay *overlay = support_overlay(f->context, 60, 60);
     assert_int_equal(snow_overlay_text(overlay, 30, 30, 0.5, 0.5, 30, "S"),
                      SNOW_STATUS_OK);
     const snow_image_options options = {.size = sizeof options,
@@ -330,19 +306,19 @@ static void letters_are_dark_on_light_backgrounds(void **state) {
 
 static void the_scale_bar_is_as_long_as_it_says(void **state) {
     image_fixture *f = *state;
-    snow_volume_info info = patient();
+    snow_volume_info info = support_patient();
     static const struct {
         double zoom;
         const char *unit;
     } cases[] = {{1, "mm"}, {3, "mm"}, {40, "um"}, {0.02, ""}, {7, "nm"}};
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
-        snow_view view = view_of(f->context, "anterior");
+        snow_view view = support_view(f->context, "anterior");
         snow_camera camera;
         view.zoom = cases[n].zoom;
         snprintf(info.unit, sizeof info.unit, "%s", cases[n].unit);
         assert_int_equal(snow_camera_make(f->context, &info, &view, &camera),
                          SNOW_STATUS_OK);
-        snow_overlay *overlay = overlay_of(f->context, 512, 512);
+        snow_overlay *overlay = support_overlay(f->context, 512, 512);
         assert_int_equal(snow_overlay_scale_bar(overlay, &info, &view),
                          SNOW_STATUS_OK);
         /* Its line is the first stroke. */
@@ -362,11 +338,11 @@ static void the_scale_bar_is_as_long_as_it_says(void **state) {
 static void micrometres_have_their_sign(void **state) {
     static const char *const texts[] = {"um", "\xc2\xb5m"};
     image_fixture *f = *state;
-    snow_volume_info info = patient();
-    snow_view view = view_of(f->context, "anterior");
+    snow_volume_info info = support_patient();
+    snow_view view = support_view(f->context, "anterior");
     float *drawn[4];
     for (int n = 0; n < 4; n++) {
-        snow_overlay *overlay = overlay_of(f->context, 512, 512);
+        snow_overlay *overlay = support_overlay(f->context, 512, 512);
         snprintf(info.unit, sizeof info.unit, "%s", texts[n % 2]);
         assert_int_equal(
             n < 2 ? snow_overlay_scale_bar(overlay, &info, &view)
@@ -384,9 +360,9 @@ static void micrometres_have_their_sign(void **state) {
 
 static void a_perspective_view_has_no_scale_bar(void **state) {
     image_fixture *f = *state;
-    snow_volume_info info = patient();
-    snow_view view = view_of(f->context, "anterior");
-    snow_overlay *overlay = overlay_of(f->context, 512, 512);
+    snow_volume_info info = support_patient();
+    snow_view view = support_view(f->context, "anterior");
+    snow_overlay *overlay = support_overlay(f->context, 512, 512);
     view.fov = 30;
     assert_int_equal(snow_overlay_scale_bar(overlay, &info, &view),
                      SNOW_STATUS_OK);
@@ -402,7 +378,7 @@ static void the_color_bar_has_the_transfer_functions_colors(void **state) {
     assert_int_equal(
         snow_transfer_new(f->context, colors, 2, opacities, 2, &transfer),
         SNOW_STATUS_OK);
-    snow_overlay *overlay = overlay_of(f->context, 300, 400);
+    snow_overlay *overlay = support_overlay(f->context, 300, 400);
     assert_int_equal(
         snow_overlay_color_bar(overlay, transfer, "HU", NULL, 0, 1),
         SNOW_STATUS_OK);
@@ -436,7 +412,7 @@ static void check_scale(image_fixture *f, snow_look look, const double ends[2],
     look.opacities = opacities;
     look.opacity_count = 2;
     snow_transfer *transfer = support_look(volume, look);
-    snow_overlay *overlay = overlay_of(f->context, 300, 400);
+    snow_overlay *overlay = support_overlay(f->context, 300, 400);
     assert_int_equal(
         snow_overlay_color_bar(overlay, transfer, NULL, NULL, 0, 1),
         SNOW_STATUS_OK);
@@ -526,7 +502,7 @@ static void any_range_has_ticks(void **state) {
             assert_int_equal(snow_transfer_new(f->context, colors, 2, &opacity,
                                                1, &transfer),
                              SNOW_STATUS_OK);
-            snow_overlay *overlay = overlay_of(f->context, side, side);
+            snow_overlay *overlay = support_overlay(f->context, side, side);
             assert_int_equal(
                 snow_overlay_color_bar(overlay, transfer, NULL, NULL, 0, 1),
                 SNOW_STATUS_OK);
@@ -546,7 +522,7 @@ static void files_show_it_and_the_picture_stays(void **state) {
         snow_image *image = support_picture(f->context, 140, 130, channels, 3);
         snow_image_pixels(image)[5] = NAN;
         uint64_t sum = snow_image_checksum(image);
-        snow_overlay *overlay = overlay_of(f->context, 140, 130);
+        snow_overlay *overlay = support_overlay(f->context, 140, 130);
         assert_int_equal(snow_overlay_text(overlay, 70, 60, 0.5, 0.5, 40, "S"),
                          SNOW_STATUS_OK);
         for (int flat = 0; flat < 2; flat++) {
@@ -576,7 +552,7 @@ static void files_show_it_and_the_picture_stays(void **state) {
         assert_int_equal(
             snow_image_save(image, support_image_path(f, "b.npy"), &options),
             SNOW_STATUS_BAD_USAGE);
-        snow_overlay *other = overlay_of(f->context, 140, 131);
+        snow_overlay *other = support_overlay(f->context, 140, 131);
         const snow_image_options wrong = {.size = sizeof wrong,
                                           .overlay = other};
         assert_int_equal(
@@ -591,7 +567,7 @@ static void files_show_it_and_the_picture_stays(void **state) {
 static void a_grey_picture_with_a_colored_bar_is_colored(void **state) {
     image_fixture *f = *state;
     snow_image *image = support_picture(f->context, 40, 40, 2, 3);
-    snow_overlay *overlay = overlay_of(f->context, 40, 40);
+    snow_overlay *overlay = support_overlay(f->context, 40, 40);
     const float red[3] = {1, 0, 0};
     assert_int_equal(snow_overlay_rows(overlay, 3, 4, 9, 5, red),
                      SNOW_STATUS_OK);
@@ -608,7 +584,7 @@ static void a_grey_picture_with_a_colored_bar_is_colored(void **state) {
 /* Every allocation in turn. */
 static void it_fails_cleanly_without_memory(void **state) {
     (void)state;
-    snow_volume_info info = patient();
+    snow_volume_info info = support_patient();
     const snow_color_point colors[] = {{0, 1, 0, 0}, {300, 0, 0, 1}};
     const snow_opacity_point opacity = {0, 1};
     snow_status status = SNOW_STATUS_NO_MEMORY;
@@ -617,7 +593,7 @@ static void it_fails_cleanly_without_memory(void **state) {
         snow_context *context = support_failing_context(&memory);
         snow_transfer *transfer = NULL;
         snow_overlay *overlay = NULL;
-        snow_view view = view_of(context, "iso");
+        snow_view view = support_view(context, "iso");
         assert_int_equal(
             snow_transfer_new(context, colors, 2, &opacity, 1, &transfer),
             SNOW_STATUS_OK);

@@ -9,38 +9,14 @@
 
 #include <math.h>
 
-/* A patient whose voxels lie as given. */
-static snow_volume_info patient(void) {
-    return (snow_volume_info){
-        .size = sizeof(snow_volume_info),
-        .dims = {20, 30, 40},
-        .matrix = {{-1, 0, 0, 3}, {0, 2, 0, 4}, {0, 0, 1, 5}, {0, 0, 0, 1}},
-        .spacing = {1, 2, 1},
-        .medical = true,
-        .unit = "mm"};
-}
-
-static snow_view view_of(snow_context *context, const char *name) {
-    snow_view view = {.size = sizeof view};
-    assert_int_equal(snow_view_from_name(context, name, &view), SNOW_STATUS_OK);
-    return view;
-}
-
-static snow_overlay *overlay_of(snow_context *context, int width, int height) {
-    snow_overlay *overlay = NULL;
-    assert_int_equal(snow_overlay_new(context, width, height, &overlay),
-                     SNOW_STATUS_OK);
-    return overlay;
-}
-
 /* All that a tool draws, in its order; `ends` are the shapes after each. */
 static snow_overlay *draw_all(snow_context *context, const snow_view *view,
                               const char *unit, double high, size_t ends[4]) {
     const snow_color_point colors[] = {{-high, 0, 0, 0}, {high, 1, 1, 1}};
     const snow_opacity_point opacity = {0, 1};
-    snow_volume_info info = patient();
+    snow_volume_info info = support_patient();
     snow_transfer *transfer = NULL;
-    snow_overlay *overlay = overlay_of(context, view->width, view->height);
+    snow_overlay *overlay = support_overlay(context, view->width, view->height);
     snprintf(info.unit, sizeof info.unit, "%s", unit);
     assert_int_equal(
         snow_transfer_new(context, colors, 2, &opacity, 1, &transfer),
@@ -84,7 +60,8 @@ static void nothing_covers_another(void **state) {
         for (int h = 0; h < 7; h++)
             for (int n = 0; n < 12; n++) {
                 size_t ends[4];
-                snow_view view = view_of(f->context, n % 2 ? "iso" : "left");
+                snow_view view =
+                    support_view(f->context, n % 2 ? "iso" : "left");
                 view.width = sides[w];
                 view.height = sides[h];
                 view.strip = sides[w] < 128 || sides[h] < 128 ? 0 : 0.5;
@@ -102,13 +79,14 @@ static void nothing_covers_another(void **state) {
  * strokes begin in whole pixels. */
 static void letters_stand_in_the_middle_of_their_edges(void **state) {
     image_fixture *f = *state;
-    snow_volume_info info = patient();
+    snow_volume_info info = support_patient();
     for (int n = 0; n < 36; n++) {
-        snow_view view = view_of(f->context, n % 2 ? "anterior" : "left");
+        snow_view view = support_view(f->context, n % 2 ? "anterior" : "left");
         view.width = 150 + 61 * n;
         view.height = 2400 - 59 * n;
         view.strip = n % 3 * 0.15;
-        snow_overlay *overlay = overlay_of(f->context, view.width, view.height);
+        snow_overlay *overlay =
+            support_overlay(f->context, view.width, view.height);
         assert_int_equal(snow_overlay_orientation(overlay, &info, &view),
                          SNOW_STATUS_OK);
         assert_int_equal(overlay->shape_count, 4);
@@ -176,7 +154,7 @@ static void bars_lie_beside_what_the_frame_shows(void **state) {
     assert_int_equal(snow_transfer_new_for_volume(volume, &look, &transfer),
                      SNOW_STATUS_OK);
     for (int n = 0; n < 50; n++) {
-        snow_view view = view_of(f->context, views[n % 3]);
+        snow_view view = support_view(f->context, views[n % 3]);
         snow_settings settings = {.size = sizeof settings,
                                   .quality = SNOW_QUALITY_DRAFT};
         snow_image *image = NULL;
@@ -186,7 +164,7 @@ static void bars_lie_beside_what_the_frame_shows(void **state) {
         view.fov = n % 5 ? 0 : 30;
         for (int drawn = 0; drawn < 2; drawn++) {
             snow_overlay *overlay =
-                overlay_of(f->context, view.width, view.height);
+                support_overlay(f->context, view.width, view.height);
             add_bars(f, transfer, n, overlay);
             const size_t bars = overlay->shape_count;
             if (!drawn)
@@ -223,14 +201,14 @@ static void bars_lie_beside_what_the_frame_shows(void **state) {
 /* A title as wide as the picture stands below the upper letter, and is cut. */
 static void a_long_title_keeps_off_the_letter(void **state) {
     image_fixture *f = *state;
-    snow_volume_info info = patient();
+    snow_volume_info info = support_patient();
     static const char *const titles[] = {
         "short", "A title that is much too long for such a picture"};
     for (int n = 0; n < 2; n++) {
         size_t ends[4] = {0};
-        snow_view view = view_of(f->context, "anterior");
+        snow_view view = support_view(f->context, "anterior");
         view.width = view.height = 300;
-        snow_overlay *overlay = overlay_of(f->context, 300, 300);
+        snow_overlay *overlay = support_overlay(f->context, 300, 300);
         assert_int_equal(snow_overlay_orientation(overlay, &info, &view),
                          SNOW_STATUS_OK);
         ends[2] = overlay->shape_count;

@@ -826,18 +826,6 @@ static void expect_frame(const movie *m, int step, const snow_look *look,
     snow_context_free(context);
 }
 
-static int begin_folder(void **state) {
-    static char folder[SUPPORT_FOLDER_BYTES];
-    support_folder_make(folder);
-    *state = folder;
-    return 0;
-}
-
-static int end_folder(void **state) {
-    support_folder_remove(*state);
-    return 0;
-}
-
 /* Of bricks that stay in place, and of ones that are recut; of a field that
  * stands still, and of one that moves: which voxels are interesting then
  * changes a little, and rows of the encoding with it. */
@@ -1323,8 +1311,9 @@ static void an_adopted_communicator_goes_with_it(void **state) {
     assert_int_equal(memory.held, 0);
 }
 
-#define MOVIE(test) \
-    cmocka_unit_test_setup_teardown(test, begin_folder, end_folder)
+#define MOVIE(test)                                             \
+    cmocka_unit_test_setup_teardown(test, support_folder_setup, \
+                                    support_folder_teardown)
 
 int main(void) {
     const struct CMUnitTest tests[] = {

@@ -197,22 +197,11 @@ static void a_step_waits_for_the_disk_where_that_is_asked_for(void **state) {
     }
 }
 
-static int begin_folder(void **state) {
-    static char folder[SUPPORT_FOLDER_BYTES];
-    support_folder_make(folder);
-    *state = folder;
-    return 0;
-}
-
-static int end_folder(void **state) {
-    support_folder_remove(*state);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_recipe_without_an_output_says_how_files_are_written),
         cmocka_unit_test(an_output_is_tried_before_a_picture_is_drawn),
         cmocka_unit_test(a_step_waits_for_the_disk_where_that_is_asked_for)};
-    return cmocka_run_group_tests(tests, begin_folder, end_folder);
+    return cmocka_run_group_tests(tests, support_folder_setup,
+                                  support_folder_teardown);
 }

@@ -1,6 +1,7 @@
 /* tests/support/files.c - temporary files, and a context that takes notes. */
 #include "support/files.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -180,4 +181,22 @@ void support_same_matrix(const double a[4][4], const double b[4][4],
         if (!(fabs(a[i / 4][i % 4] - b[i / 4][i % 4]) <= tolerance))
             fail_msg("matrix entry %d: %.17g and %.17g", i, a[i / 4][i % 4],
                      b[i / 4][i % 4]);
+}
+
+void support_each_of_corpus(const char *subject, const char *name,
+                            void (*check)(const char *path, const char *name)) {
+    char folder[512], path[1024];
+    snprintf(folder, sizeof folder, "%s/%s", SNOW_CORPUS, subject);
+    DIR *stream = opendir(folder);
+    assert_non_null(stream);
+    int files = 0;
+    for (const struct dirent *entry; (entry = readdir(stream));) {
+        if (*entry->d_name == '.')
+            continue;
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        check(path, name);
+        files++;
+    }
+    closedir(stream);
+    assert_true(files > 5);
 }

@@ -27,6 +27,11 @@ int support_files_teardown(void **state);
     cmocka_unit_test_setup_teardown(function, support_files_setup, \
                                     support_files_teardown)
 
+/* Checks all files of a fuzzer's corpus, of which there are some, by their
+ * paths, as of a `name`. */
+void support_each_of_corpus(const char *subject, const char *name,
+                            void (*check)(const char *path, const char *name));
+
 /* How many warnings were heard. */
 int support_warned(const support_files *files);
 

@@ -25,6 +25,28 @@ void support_folder_remove(const char *folder) {
     assert_int_equal(rmdir(folder), 0);
 }
 
+int support_folder_files(const char *folder) {
+    DIR *listing = opendir(folder);
+    assert_non_null(listing);
+    int count = -2; /* . and .. */
+    while (readdir(listing))
+        count++;
+    closedir(listing);
+    return count;
+}
+
+int support_folder_setup(void **state) {
+    static char folder[SUPPORT_FOLDER_BYTES];
+    support_folder_make(folder);
+    *state = folder;
+    return 0;
+}
+
+int support_folder_teardown(void **state) {
+    support_folder_remove(*state);
+    return 0;
+}
+
 const char *support_folder_path(const char *folder, const char *name) {
     static char paths[4][512];
     static int next;

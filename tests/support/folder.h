@@ -12,6 +12,13 @@
 void support_folder_make(char folder[SUPPORT_FOLDER_BYTES]);
 void support_folder_remove(const char *folder);
 
+/* How many files are in it, hidden ones included. */
+int support_folder_files(const char *folder);
+
+/* cmocka's set-up and tear-down of such a folder: *state is its path. */
+int support_folder_setup(void **state);
+int support_folder_teardown(void **state);
+
 /* The path of a name in it; lasts until the next call but three. */
 const char *support_folder_path(const char *folder, const char *name);
 

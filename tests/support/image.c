@@ -1,7 +1,6 @@
 /* tests/support/image.c - see support_image.h. */
 #include "support/image.h"
 
-#include <dirent.h>
 #include <unistd.h>
 
 static void hear_warning(void *user, const char *text) {
@@ -37,14 +36,27 @@ const char *support_image_path(image_fixture *fixture, const char *name) {
     return fixture->path;
 }
 
-int support_image_files(const image_fixture *fixture) {
-    DIR *listing = opendir(fixture->folder);
-    assert_non_null(listing);
-    int count = -2; /* . and .. */
-    while (readdir(listing))
-        count++;
-    closedir(listing);
-    return count;
+snow_volume_info support_patient(void) {
+    return (snow_volume_info){
+        .size = sizeof(snow_volume_info),
+        .dims = {20, 30, 40},
+        .matrix = {{-1, 0, 0, 3}, {0, 2, 0, 4}, {0, 0, 1, 5}, {0, 0, 0, 1}},
+        .spacing = {1, 2, 1},
+        .medical = true,
+        .unit = "mm"};
+}
+
+snow_view support_view(snow_context *context, const char *name) {
+    snow_view view = {.size = sizeof view};
+    assert_int_equal(snow_view_from_name(context, name, &view), SNOW_STATUS_OK);
+    return view;
+}
+
+snow_overlay *support_overlay(snow_context *context, int width, int height) {
+    snow_overlay *overlay = NULL;
+    assert_int_equal(snow_overlay_new(context, width, height, &overlay),
+                     SNOW_STATUS_OK);
+    return overlay;
 }
 
 support_bytes support_read_file(const char *path) {

@@ -7,6 +7,7 @@
 #include "support/support.h"
 
 #include "image/image.h"
+#include "image/overlay.h"
 
 /* A context and an empty folder; cmocka's setup and teardown.  The teardown
  * fails the test when memory or files other than `path` are left. */
@@ -23,8 +24,11 @@ int support_image_teardown(void **state);
 /* The path of a file in the fixture's folder. */
 const char *support_image_path(image_fixture *fixture, const char *name);
 
-/* Files in the folder now. */
-int support_image_files(const image_fixture *fixture);
+/* A patient whose voxels lie as given, a named view, what is drawn over a
+ * picture of a size. */
+snow_volume_info support_patient(void);
+snow_view support_view(snow_context *context, const char *name);
+snow_overlay *support_overlay(snow_context *context, int width, int height);
 
 typedef struct support_bytes {
     unsigned char *bytes;
