@@ -79,7 +79,10 @@ static bool store_real(snow_type type, const char *word, void *at) {
     return true;
 }
 
-bool snow_store_number(snow_type type, const char *word, void *at) {
+/* Writes the number that a word represents to `at`, which needs no alignment.
+ * Returns false if it is not a value of the type: exactly for integers, by
+ * range for floats. */
+static bool store_number(snow_type type, const char *word, void *at) {
     int64_t value;
     if (type == SNOW_TYPE_UINT64)
         return store_unsigned(word, at);
@@ -186,7 +189,7 @@ static snow_status read_words(word_reader *reader, snow_type type,
                              "truncated, or its sizes are wrong",
                              name, (unsigned long long)i,
                              (unsigned long long)all);
-        if (!snow_store_number(type, reader->word, at ? at : &unwanted))
+        if (!store_number(type, reader->word, at ? at : &unwanted))
             return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                              "%s: its number %llu, \"%.40s\", is not a valid "
                              "%s; correct it or the type",

@@ -5,11 +5,6 @@
 
 #include "formats/format.h"
 
-/* Writes the number that a word represents to `at`, which needs no alignment.
- * Returns false if it is not a value of the type: exactly for integers, by
- * range for floats. */
-bool snow_store_number(snow_type type, const char *word, void *at);
-
 /* Copies the next word between blanks or tabs, and moves behind it; returns
  * false at the end, and for a word for which there is no room, which could
  * match another if shortened. */

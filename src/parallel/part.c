@@ -217,8 +217,9 @@ static bool is_border(const snow_partition_params *order, int64_t slice) {
     return !order->grid.borders;
 }
 
-bool snow_part_serves(const snow_volume *volume,
-                      const snow_partition_params *order) {
+/* Returns whether this rank's part gives its share of a picture. */
+static bool serves(const snow_volume *volume,
+                   const snow_partition_params *order) {
     snow_extent part;
     snow_volume_find_extent(volume, &part);
     const snow_box box = snow_part_box(volume);
@@ -240,20 +241,6 @@ bool snow_part_serves(const snow_volume *volume,
 }
 
 snow_status
-snow_ranks_distribute(snow_comm *comm, const snow_volume_info *whole,
-                      const snow_partition_params *order, const snow_box *boxes,
-                      const snow_transfer *transfer, snow_volume **volume) {
-    snow_volume *recut;
-    SNOW_TRY(boxes ? send_share(comm, whole, order, boxes, transfer, *volume,
-                                false, &recut)
-                   : snow_part_cut(comm, whole, order, *volume, false, transfer,
-                                   &recut));
-    snow_volume_close(*volume);
-    *volume = recut;
-    return SNOW_STATUS_OK;
-}
-
-snow_status
 snow_ranks_repartition(snow_comm *comm, const snow_transfer *transfer,
                        const snow_view *view, const snow_settings *settings,
                        const snow_ranks_options *how, snow_volume **volume) {
@@ -264,12 +251,16 @@ snow_ranks_repartition(snow_comm *comm, const snow_transfer *transfer,
         snow_comm_context(comm), &whole, view, settings, how,
         snow_transfer_slopes(transfer, &whole), snow_comm_size(comm), &order);
     /* One round: 0, all serve; 1, some do not; 2, some failed. */
-    int64_t worst =
-        status != SNOW_STATUS_OK ? 2 : !snow_part_serves(*volume, &order);
+    int64_t worst = status != SNOW_STATUS_OK ? 2 : !serves(*volume, &order);
     SNOW_TRY(snow_comm_reduce_ints(comm, &worst, 1, SNOW_REDUCE_MAX));
     if (worst == 0)
         return SNOW_STATUS_OK;
     if (worst == 2)
         return snow_comm_agree_status(comm, status);
-    return snow_ranks_distribute(comm, &whole, &order, NULL, transfer, volume);
+    snow_volume *recut;
+    SNOW_TRY(
+        snow_part_cut(comm, &whole, &order, *volume, false, transfer, &recut));
+    snow_volume_close(*volume);
+    *volume = recut;
+    return SNOW_STATUS_OK;
 }

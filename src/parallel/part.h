@@ -37,18 +37,6 @@ snow_status snow_part_cut(snow_comm *comm, const snow_volume_info *whole,
 /* What a part answers for, with what it lacks. */
 snow_box snow_part_box(const snow_volume *volume);
 
-/* Returns whether this rank's part gives its share of a picture. */
-bool snow_part_serves(const snow_volume *volume,
-                      const snow_partition_params *order);
-
-/* Collective.  Voxels of the whole, of which all ranks hold a part, go where
- * the boxes say; NULL: where the order says.  *volume is closed and replaced,
- * unless it fails. */
-snow_status
-snow_ranks_distribute(snow_comm *comm, const snow_volume_info *whole,
-                      const snow_partition_params *order, const snow_box *boxes,
-                      const snow_transfer *transfer, snow_volume **volume);
-
 /* --- open.c ---
 
  * The name of format `index` (snow_format_name). */

@@ -13,9 +13,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Does what part_of_way does, on a logarithmic scale; points with equal
+/* The position of a value on the way from a to b on a logarithmic scale, 0 < a
+ * < b, a <= value <= b: from 0 to 1, never decreasing; points with equal
  * logarithms are joined by a straight line. */
-double snow_part_of_decades(double value, double a, double b) {
+static double part_of_decades(double value, double a, double b) {
     double from = snow_log2_rising(a), to = snow_log2_rising(b);
     if (!(from < to))
         return (value - a) / (b - a);
@@ -35,7 +36,7 @@ double snow_white_share(double white, double least, double opacity) {
  * their distance exceeds the largest double. */
 static double part_of_way(bool log, double value, double a, double b) {
     if (log)
-        return snow_part_of_decades(value, a, b);
+        return part_of_decades(value, a, b);
     if (isfinite(b - a))
         return (value - a) / (b - a);
     return (value / 2 - a / 2) / (b / 2 - a / 2);

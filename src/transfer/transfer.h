@@ -52,10 +52,6 @@ typedef struct snow_transfer_hint {
 void snow_transfer_near(const snow_transfer *transfer, double value,
                         snow_transfer_hint *hint, double rgba[4]);
 
-/* The position of a value on the way from a to b on a logarithmic scale, 0 < a
- * < b, a <= value <= b: from 0 to 1, never decreasing. */
-double snow_part_of_decades(double value, double a, double b);
-
 /* Returns whether values are labels: whole numbers that are shown in colours
  * of categories, without any in between. */
 bool snow_transfer_has_labels(const snow_transfer *transfer,

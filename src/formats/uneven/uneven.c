@@ -36,12 +36,6 @@ bool snow_uneven_any(const snow_uneven *grid) {
     return grid->at[0] || grid->at[1] || grid->at[2];
 }
 
-snow_type snow_uneven_type(snow_type type) {
-    return type == SNOW_TYPE_INT64 || type == SNOW_TYPE_UINT64
-               ? SNOW_TYPE_FLOAT64
-               : type;
-}
-
 /* --- the even grid -------------------------------------------------------- */
 
 static void find_steps(const double *at, int64_t count, double *least,
@@ -365,7 +359,9 @@ static snow_status read_box(snow_context *context, resampling *r,
         native.dims[i] = grid->count[i];
     }
     SNOW_TRY(read(user, &own, &native, out ? &from : NULL));
-    info->type = snow_uneven_type(native.type);
+    const bool wide =
+        native.type == SNOW_TYPE_INT64 || native.type == SNOW_TYPE_UINT64;
+    info->type = wide ? SNOW_TYPE_FLOAT64 : native.type;
     info->slope = native.slope;
     info->intercept = native.intercept;
     if (!out)

@@ -37,9 +37,6 @@ bool snow_uneven_any(const snow_uneven *grid);
 void snow_uneven_plan(snow_context *context, snow_uneven *grid,
                       snow_volume_info *info);
 
-/* The type of resampled values: integers of 64 bits become float64. */
-snow_type snow_uneven_type(snow_type type);
-
 /* Reads a box of the file's own voxels, as the crop of the options says; where
  * `out` is NULL only the sizes are checked. */
 typedef snow_status snow_uneven_fn(void *user,

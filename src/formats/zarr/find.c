@@ -19,8 +19,9 @@
 
 /* --- images --------------------------------------------------------------- */
 
-/* Since version 0.5 all of OME's metadata are one attribute. */
-const json_t *snow_zarr_image(const json_t *attributes, size_t index) {
+/* The entry of "multiscales" of attributes by its index, or NULL.  Since
+ * version 0.5 all of OME's metadata are one attribute. */
+static const json_t *image_at(const json_t *attributes, size_t index) {
     const json_t *own = json_object_get(attributes, "ome");
     const json_t *list = json_object_get(own ? own : attributes, "multiscales");
     const json_t *image = json_array_get(list, index);
@@ -142,7 +143,7 @@ static void set_level(const zarr_store *store, const json_t *image, int index,
 
 static snow_status take_finest(const zarr_store *store, const char *group,
                                zarr_node *node, zarr_found *found) {
-    const json_t *image = snow_zarr_image(node->attributes, 0);
+    const json_t *image = image_at(node->attributes, 0);
     char list[LIST_BYTES] = "";
     int first;
     SNOW_TRY(list_levels(store, group, image, list, &first));
@@ -152,8 +153,7 @@ static snow_status take_finest(const zarr_store *store, const char *group,
                               "first is %.200s); copy it again",
                               level_count(image),
                               snow_zarr_level_path(image, 0));
-    set_level(store, image, first, list,
-              snow_zarr_image(node->attributes, 1) != NULL);
+    set_level(store, image, first, list, image_at(node->attributes, 1) != NULL);
     return take_level(store, group, node, image, first, found);
 }
 
@@ -165,14 +165,14 @@ static const json_t *level_named(const json_t *attributes, const char *path,
                                  bool by_number, int *index) {
     int64_t number = -1;
     const json_t *image;
-    for (size_t i = 0; (image = snow_zarr_image(attributes, i)); i++)
+    for (size_t i = 0; (image = image_at(attributes, i)); i++)
         for (size_t level = 0; level < level_count(image); level++) {
             const char *own = snow_zarr_level_path(image, level);
             *index = (int)level;
             if (own && !strcmp(own, path))
                 return image;
         }
-    image = snow_zarr_image(attributes, 0);
+    image = image_at(attributes, 0);
     if (!by_number || !image || !isdigit((unsigned char)*path) ||
         !snow_parse_int64(path, &number) || number < 0 ||
         (size_t)number >= level_count(image))
@@ -270,8 +270,8 @@ static void gather_aside(survey *s, const zarr_node *node) {
 }
 
 static snow_status survey_node(survey *s, const zarr_node *node) {
-    bool image = node->kind == ZARR_GROUP &&
-                 snow_zarr_image(node->attributes, 0) != NULL;
+    bool image =
+        node->kind == ZARR_GROUP && image_at(node->attributes, 0) != NULL;
     const char *name = s->at + strlen(s->top) + (*s->top ? 1 : 0);
     if (node->kind == ZARR_GROUP && !image)
         return survey_below(s);
@@ -365,7 +365,7 @@ static snow_status find_at(const zarr_store *store, const char *path,
     SNOW_TRY(snow_zarr_look(store, path, &node));
     zarr_kind kind = node.kind;
     snow_status status = SNOW_STATUS_OK;
-    if (kind == ZARR_GROUP && snow_zarr_image(node.attributes, 0)) {
+    if (kind == ZARR_GROUP && image_at(node.attributes, 0)) {
         status = take_finest(store, path, &node, out);
         taken = true;
     }

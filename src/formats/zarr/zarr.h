@@ -185,11 +185,8 @@ snow_status snow_zarr_find(const zarr_store *store, const char *path,
                            zarr_found *out);
 void snow_zarr_found_forget(zarr_found *found);
 
-/* The entry of "multiscales" of attributes by its index, or NULL. */
-const json_t *snow_zarr_image(const json_t *attributes, size_t index);
-
-/* The path of one of its resolution levels within its group; NULL if it is
- * invalid. */
+/* The path of a resolution level of an entry of "multiscales" within its group;
+ * NULL if it is invalid. */
 const char *snow_zarr_level_path(const json_t *image, size_t index);
 
 /* What the Climate and Forecast conventions say of an array. */

@@ -66,7 +66,8 @@ static bool rises(const snow_placement *p, int x, int y) {
     return ray[2] > 0;
 }
 
-void snow_depth_note(const snow_job *job, int64_t slice, int x, int y,
+/* Of `count` pixels of a row from (x, y) on; `sheet` is the first one's. */
+static void note_row(const snow_job *job, int64_t slice, int x, int y,
                      int count, const float *sheet) {
     const snow_placement *p = &job->placement;
     size_t channels = (size_t)job->channels;
@@ -94,9 +95,9 @@ void snow_depth_note_sheet(const snow_job *job, int64_t slice,
     if (!job->depths || sheet->x0 >= sheet->x1)
         return;
     for (int y = sheet->y0; y < sheet->y1; y++)
-        snow_depth_note(job, slice, sheet->x0, y, sheet->x1 - sheet->x0,
-                        sheet->pixels +
-                            ((size_t)(y - sheet->top) * (size_t)sheet->width +
-                             (size_t)sheet->x0) *
-                                (size_t)job->channels);
+        note_row(job, slice, sheet->x0, y, sheet->x1 - sheet->x0,
+                 sheet->pixels +
+                     ((size_t)(y - sheet->top) * (size_t)sheet->width +
+                      (size_t)sheet->x0) *
+                         (size_t)job->channels);
 }

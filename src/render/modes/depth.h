@@ -9,12 +9,9 @@
  * of[0] u + of[1] v + of[2] k + of[3]. */
 void snow_depth_place(const snow_job *job, double of[4]);
 
-/* Notes where opacity passes 1/2 before a row of a sheet is laid behind what
- * the local image holds: of `count` pixels from (x, y) on; `sheet` is the first
- * one's.  What a sheet adds grows evenly from half a slice before it to half a
- * slice behind, so that an opaque one is where its slice is. */
-void snow_depth_note(const snow_job *job, int64_t slice, int x, int y,
-                     int count, const float *sheet);
+/* Notes where opacity passes 1/2 before a sheet is laid behind what the local
+ * image holds.  What a sheet adds grows evenly from half a slice before it to
+ * half a slice behind, so that an opaque one is where its slice is. */
 void snow_depth_note_sheet(const snow_job *job, int64_t slice,
                            const snow_sheet *sheet);
 
