@@ -188,11 +188,9 @@ static snow_status find_value(const bench_volume *volume, double target,
     int low = 0, high = 254;
     while (low < high) {
         int middle = (low + high) / 2;
-        snow_status status =
-            snow_transfer_sparse_ratio(volume->transfer, volume->volume,
-                                       threshold_above(middle), sparse_ratio);
-        if (status != SNOW_STATUS_OK)
-            return status;
+        BENCH_TRY(snow_transfer_sparse_ratio(volume->transfer, volume->volume,
+                                             threshold_above(middle),
+                                             sparse_ratio));
         if (*sparse_ratio >= target)
             high = middle;
         else

@@ -44,12 +44,11 @@ static snow_status plan(snow_comm *comm, const figure_job *job,
     snow_box parts[NODES_MOST];
     snow_volume *whole;
     snow_transfer *transfer = NULL;
-    snow_status status =
+    BENCH_TRY(
         snow_volume_wrap(context, snow_volume_get_info(job->volume->volume),
-                         snow_volume_voxels(job->volume->volume), &whole);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    status = snow_transfer_new_for_volume(whole, &bench_linear_look, &transfer);
+                         snow_volume_voxels(job->volume->volume), &whole));
+    snow_status status =
+        snow_transfer_new_for_volume(whole, &bench_linear_look, &transfer);
     if (status == SNOW_STATUS_OK)
         status = snow_ranks_partition(whole, transfer, job->paper->threshold,
                                       job->way == BENCH_ORIGINAL
@@ -70,9 +69,7 @@ static snow_status open_slab(snow_comm *comm, const figure_job *job,
     const char *voxels = snow_volume_voxels(job->volume->volume);
     snow_extent part = {.size = sizeof part};
     snow_box box;
-    snow_status status = plan(comm, job, &box);
-    if (status != SNOW_STATUS_OK)
-        return status;
+    BENCH_TRY(plan(comm, job, &box));
     memcpy(part.dims, info.dims, sizeof part.dims);
     memcpy(part.first, box.first, sizeof part.first);
     memcpy(part.count, box.count, sizeof part.count);
@@ -84,8 +81,9 @@ static snow_status open_slab(snow_comm *comm, const figure_job *job,
         info.matrix[row][3] += info.matrix[row][2] * (double)part.stored[2];
     size_t slice =
         (size_t)(info.dims[0] * info.dims[1]) * snow_type_size(info.type);
-    status = snow_volume_wrap(snow_comm_context(comm), &info,
-                              voxels + (size_t)part.stored[2] * slice, out);
+    snow_status status =
+        snow_volume_wrap(snow_comm_context(comm), &info,
+                         voxels + (size_t)part.stored[2] * slice, out);
     if (status == SNOW_STATUS_OK)
         status = snow_volume_set_extent(*out, &part);
     return status;
@@ -212,10 +210,8 @@ static snow_status measure(snow_context *context, const snow_network *network,
     *out = (figure_time){.seconds = INFINITY};
     for (int run = 0; run < runs; run++) {
         double begin = figure_progress_clock();
-        snow_status status =
-            snow_comm_run_simulated(context, nodes, network, be_node, job);
-        if (status != SNOW_STATUS_OK)
-            return status;
+        BENCH_TRY(
+            snow_comm_run_simulated(context, nodes, network, be_node, job));
         if (job->least.seconds < out->seconds)
             *out = job->least;
         if (job->counted_way >= 0)
@@ -235,10 +231,8 @@ static snow_status measure_way(snow_context *context, int runs,
                                figure_time *taken, double *largest) {
     job->expected = NULL;
     for (int n = 0; n < FIGURE_NODES; n++) {
-        snow_status status =
-            measure(context, network, figure_nodes[n], runs, job, &taken[n]);
-        if (status != SNOW_STATUS_OK)
-            return status;
+        BENCH_TRY(
+            measure(context, network, figure_nodes[n], runs, job, &taken[n]));
         job->expected = job->kept;
         if (job->largest > *largest)
             *largest = job->largest;

@@ -122,12 +122,9 @@ static snow_status do_row(snow_context *context, const bench_options *options,
                           const bench_paper_row *paper, json_t *list) {
     bench_volume volume;
     bench_row row = {0};
-    snow_status status =
-        bench_volume_open(context, paper->set, options, &volume);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    status = bench_measure(context, &volume, options, paper->threshold,
-                           paper->footprint, &row);
+    BENCH_TRY(bench_volume_open(context, paper->set, options, &volume));
+    snow_status status = bench_measure(
+        context, &volume, options, paper->threshold, paper->footprint, &row);
     if (status == SNOW_STATUS_OK && list)
         json_array_append_new(list, row_json(paper, &row, volume.source));
     else if (status == SNOW_STATUS_OK)

@@ -64,9 +64,7 @@ static json_t *tree_of(const snow_look *points) {
 snow_status snow_look_write_json(snow_context *context, const snow_look *given,
                                  char *text, size_t capacity, size_t *length) {
     snow_look look;
-    snow_status status = SNOW_RECORD_READ(context, snow_look, given, &look);
-    if (status != SNOW_STATUS_OK)
-        return status;
+    TF_TRY(SNOW_RECORD_READ(context, snow_look, given, &look));
     json_t *tree = tree_of(&look);
     size_t flags = JSON_INDENT(1) | JSON_REAL_PRECISION(17);
     size_t bytes = tree ? json_dumpb(tree, text, capacity, flags) : 0;
@@ -151,9 +149,7 @@ static void put_rows(sheet *out, const snow_look *points) {
 snow_status snow_look_write_csv(snow_context *context, const snow_look *given,
                                 char *text, size_t capacity, size_t *length) {
     snow_look look;
-    snow_status status = SNOW_RECORD_READ(context, snow_look, given, &look);
-    if (status != SNOW_STATUS_OK)
-        return status;
+    TF_TRY(SNOW_RECORD_READ(context, snow_look, given, &look));
     sheet out = {text, capacity, 0};
     if (!look.color_count || !look.opacity_count)
         return snow_context_fail(
