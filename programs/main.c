@@ -18,7 +18,6 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 /* bench and serve are not in the list: they are programs of their own. */
 static int run_verb(const verb_row *verb, const options *opts) {

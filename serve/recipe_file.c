@@ -4,8 +4,6 @@
 #include "options/config.h"
 #include "options/config_paths.h"
 
-#include <snowglass/recipe.h>
-
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>

@@ -11,7 +11,6 @@
 #include "run/start.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

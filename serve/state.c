@@ -2,7 +2,6 @@
 #include "message.h"
 #include "state_own.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>

@@ -18,7 +18,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #ifndef SNOW_BUILD_FLAGS
 #define SNOW_BUILD_FLAGS "unknown flags"

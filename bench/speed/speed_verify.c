@@ -8,7 +8,6 @@
  * the wide instruction sets; and, at threshold 0, original and tested. */
 #include "speed.h"
 
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>

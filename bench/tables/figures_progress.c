@@ -8,7 +8,6 @@
 #include "run/log.h"
 
 #include <stdio.h>
-#include <unistd.h>
 
 /* Seconds between two reports: on a terminal, elsewhere. */
 #define LIVE_SECONDS 0.5

@@ -7,7 +7,6 @@
 #include "machine.h"
 
 #include <stdio.h>
-#include <string.h>
 
 /* Keys of JSON, in the order of the enum: a promise to scripts. */
 static const char *const way_names[BENCH_WAYS] = {"original", "tested", "crs",

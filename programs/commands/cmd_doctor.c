@@ -5,7 +5,6 @@
 #include "run/log.h"
 #include "run/start.h"
 
-#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>

@@ -6,7 +6,6 @@
 #include "commands/info_volume.h"
 #include "commands/world.h"
 #include "run/log.h"
-#include "run/paths.h"
 
 #include <inttypes.h>
 #include <math.h>

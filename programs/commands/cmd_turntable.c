@@ -7,7 +7,6 @@
 #include "run/log.h"
 #include "run/start.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -5,7 +5,6 @@
 #include "run/sibling.h"
 
 #include <stdio.h>
-#include <string.h>
 
 enum {
     RENDER = VERB_RENDER,

@@ -2,7 +2,6 @@
 #include "measure/measures.h"
 #include "commands/commands.h"
 #include "run/log.h"
-#include "run/start.h"
 
 #include <math.h>
 #include <stdio.h>

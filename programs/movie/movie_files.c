@@ -6,7 +6,6 @@
 #include "movie/movie_names.h"
 #include "run/log.h"
 #include "run/paths.h"
-#include "run/start.h"
 
 #include <ctype.h>
 #include <dirent.h>

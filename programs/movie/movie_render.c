@@ -5,10 +5,8 @@
 #include "commands/commands.h"
 #include "picture/warnings.h"
 #include "run/log.h"
-#include "run/start.h"
 
 #include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

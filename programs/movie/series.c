@@ -3,14 +3,12 @@
 #include "commands/commands.h"
 #include "movie/movie_files.h"
 #include "run/log.h"
-#include "run/start.h"
 
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Up to so many steps all are looked at; of more, which rise, few. */

@@ -6,7 +6,6 @@
 #include "options/config.h"
 #include "options/config_paths.h"
 #include "run/log.h"
-#include "run/paths.h"
 #include "run/start.h"
 
 #include <jansson.h>

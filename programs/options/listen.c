@@ -2,7 +2,6 @@
  * its own, and is in brackets before a port. */
 #include "options/option_values.h"
 
-#include <stdio.h>
 #include <string.h>
 
 static bool take_address(const char *text, size_t length, listen_value *out) {

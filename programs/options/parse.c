@@ -6,7 +6,6 @@
 #include "options/parse.h"
 #include "options/guess.h"
 
-#include <math.h>
 #include <snowglass/snowglass.h>
 #include <stdio.h>
 #include <stdlib.h>

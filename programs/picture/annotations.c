@@ -3,7 +3,6 @@
  * of floats never do. */
 #include "picture/annotations.h"
 #include "movie/movie_encoder.h"
-#include "picture/default_name.h"
 #include "run/log.h"
 #include "run/start.h"
 

@@ -3,9 +3,7 @@
 #include "picture/render_state.h"
 #include "commands/commands.h"
 #include "commands/first.h"
-#include "options/config.h"
 #include "picture/annotations.h"
-#include "picture/light.h"
 #include "picture/warnings.h"
 #include "run/interrupt.h"
 #include "run/log.h"
@@ -14,7 +12,6 @@
 #include <snowglass/extend.h>
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #ifdef __GLIBC__

@@ -1,7 +1,6 @@
 /* picture/settings.c - the library's records of settings and view, from the
  * options. */
 #include "commands/commands.h"
-#include "options/config.h"
 #include "run/log.h"
 #include "run/start.h"
 

@@ -3,7 +3,6 @@
 #include "report/report.h"
 
 #include <inttypes.h>
-#include <string.h>
 
 /* Kinds: i whole, f real, t text.  A size of 0: the version has none. */
 static const struct {

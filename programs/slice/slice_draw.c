@@ -1,6 +1,5 @@
 /* slice_draw.c - the picture of a slice, or of several beside one another. */
 #include "picture/annotations.h"
-#include "picture/outputs.h"
 #include "run/log.h"
 #include "slice/slice.h"
 

@@ -1,5 +1,4 @@
 /* slice_find.c - which slices of a volume are drawn, and how they lie. */
-#include "commands/commands.h"
 #include "commands/world.h"
 #include "movie/movie_encoder.h"
 #include "movie/movie_names.h"
@@ -7,7 +6,6 @@
 #include "run/log.h"
 #include "slice/slice.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

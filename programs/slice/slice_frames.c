@@ -4,14 +4,11 @@
 #include "commands/commands.h"
 #include "movie/movie_render.h"
 #include "options/config.h"
-#include "picture/outputs.h"
-#include "picture/show.h"
 #include "run/log.h"
 #include "run/start.h"
 #include "slice/slice.h"
 
 #include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,8 +1,6 @@
 /* slice_read.c - reads slices, what lies over them, and their look. */
 #include "commands/commands.h"
 #include "picture/annotations.h"
-#include "picture/outputs.h"
-#include "picture/warnings.h"
 #include "run/log.h"
 #include "run/memory.h"
 #include "slice/slice.h"

@@ -1,7 +1,6 @@
 /* answers.c - implements answers.h. */
 #include "answers/answers.h"
 
-#include "commands/commands.h"
 #include "draw/pick.h"
 #include "draw/slices.h"
 #include "draw/values.h"

@@ -8,7 +8,6 @@
 #include "draw/slices.h"
 #include "options/config.h"
 #include "picture/annotations.h"
-#include "picture/paint.h"
 #include "run/log.h"
 
 #include <snowglass/ranks.h>

@@ -1,6 +1,5 @@
 /* pick.c - implements pick.h by a small picture with depths. */
 #include "draw/pick.h"
-#include "commands/commands.h"
 #include "draw/ranks.h"
 #include "draw/small.h"
 #include "run/log.h"

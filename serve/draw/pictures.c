@@ -1,6 +1,5 @@
 /* pictures.c - pictures of a drawing, and the command that makes one; see
  * drawing.h. */
-#include "commands/commands.h"
 #include "draw/drawing.h"
 #include "draw/kept.h"
 #include "draw/mixed.h"

@@ -11,7 +11,6 @@
 #include "pack.h"
 #include "run/log.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -2,7 +2,6 @@
 #include "folder/inside.h"
 #include "folder/own.h"
 #include "options/config_paths.h"
-#include "run/paths.h"
 
 #include <snowglass/recipe.h>
 

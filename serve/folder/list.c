@@ -8,9 +8,7 @@
 #include "answers/answers.h"
 #include "folder/own.h"
 #include "run/log.h"
-#include "run/paths.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

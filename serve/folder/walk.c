@@ -6,7 +6,6 @@
 #define _XOPEN_SOURCE 700
 #include "folder/inside.h"
 #include "folder/own.h"
-#include "run/paths.h"
 
 #include <dirent.h>
 #include <errno.h>

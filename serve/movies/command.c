@@ -1,6 +1,5 @@
 /* command.c - implements command.h. */
 #include "movies/command.h"
-#include "commands/commands.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -2,7 +2,6 @@
 #include "movies/times.h"
 #include "commands/commands.h"
 #include "draw/values.h"
-#include "picture/warnings.h"
 #include "run/log.h"
 
 #include <string.h>

@@ -1,7 +1,6 @@
 /* annotate/length.c - see length.h. */
 #include "annotate/length.h"
 
-#include <math.h>
 #include <string.h>
 
 double snow_length_factor(double length, double least, double below,

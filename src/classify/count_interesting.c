@@ -3,7 +3,6 @@
 #include "classify/count_interesting.h"
 #include "base/thread_pool.h"
 #include "decompose/ray_grid.h"
-#include "volume/stream.h"
 
 #include <string.h>
 

@@ -8,7 +8,6 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 snow_status snow_insitu_new(snow_comm *comm, snow_insitu **out) {
     snow_context *context = snow_comm_context(comm);

@@ -14,7 +14,6 @@
 #include "volume/stream.h"
 
 #include <math.h>
-#include <string.h>
 
 /* The bounds fill so much of a picture's side. */
 #define FILLED 0.92

@@ -19,7 +19,6 @@
 #include "parallel/internal.h"
 
 #include <math.h>
-#include <string.h>
 
 snow_status snow_in_flight_agree_range(snow_in_flight *f) {
     enum { MINUS_LOW, HIGH, HOLES, COUNT };

@@ -6,7 +6,6 @@
 #include "recipe/keys.h"
 
 #include <snowglass/extend.h>
-#include <snowglass/look_file.h>
 
 #include <math.h>
 #include <stdio.h>

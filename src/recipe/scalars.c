@@ -5,7 +5,6 @@
 #include <snowglass/extend.h>
 #include <stddef.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 

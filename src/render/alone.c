@@ -6,8 +6,6 @@
 
 #include "base/clear.h"
 
-#include <string.h>
-
 /* --- before the local image ----------------------------------------------- */
 
 /* What one process finds is what all find. */

@@ -4,7 +4,6 @@
  * axis_scale has: a picture may be higher than its volume, a length is not.
  * Voxels are compared with an ellipse by their centres. */
 #include "base/vec3.h"
-#include "render/slice.h"
 #include "volume/volume.h"
 
 #include <snowglass/extend.h>

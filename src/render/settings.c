@@ -4,8 +4,6 @@
 #include "transfer/look.h"
 #include "volume/volume.h"
 
-#include <string.h>
-
 static const char *const methods[] = {
     [SNOW_METHOD_AUTO] = "auto",
     [SNOW_METHOD_ORIGINAL] = "original",

@@ -30,8 +30,6 @@
 #include "transfer/look.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define BINS 1024

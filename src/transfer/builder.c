@@ -7,8 +7,6 @@
 #include "transfer/look.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 void snow_full_range(const snow_histogram *histogram, double *low,

@@ -15,7 +15,6 @@
 #include "transfer/walk.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Found by trying regions of 32^3 to 128^3 voxels, single voxels and coarse

@@ -4,7 +4,6 @@
  * Of both there may be boxes only.  Places are computed from indices of the
  * wholes, so that a box has the bits that it has in the whole. */
 #include "volume/clip_planes.h"
-#include "volume/mask.h"
 #include "volume/stream_internal.h"
 
 #include <math.h>

@@ -4,7 +4,6 @@
 #include "volume/mask.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* --- sizes ---------------------------------------------------------------- */

@@ -3,8 +3,6 @@
 #include "support/image.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <unistd.h>
 #include <zlib.h>
 
 /* A file in memory. */

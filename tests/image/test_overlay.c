@@ -8,7 +8,6 @@
 
 #include <math.h>
 #include <snowglass/overlay.h>
-#include <string.h>
 
 /* --- letters -------------------------------------------------------------- */
 

@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <png.h>
-#include <unistd.h>
 #include <zlib.h>
 
 /* --- files by libpng ------------------------------------------------------ */

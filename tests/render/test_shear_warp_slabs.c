@@ -4,8 +4,6 @@
 #include "support/files.h"
 #include "support/scenario.h"
 
-#include <math.h>
-
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
 /* Where the second volume is resampled, also for few pixels, or a box of it is

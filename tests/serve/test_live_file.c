@@ -5,7 +5,6 @@
 #include "live_file.h"
 
 #include <fcntl.h>
-#include <unistd.h>
 
 /* The least PNG that is one for this reader: a head, perhaps a text, data. */
 static size_t make_png(unsigned char out[256], const char *text) {

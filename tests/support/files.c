@@ -3,7 +3,6 @@
 
 #include <dirent.h>
 #include <math.h>
-#include <unistd.h>
 #include <zlib.h>
 
 static void *noting_allocate(void *user, size_t bytes) {

@@ -14,7 +14,6 @@
 #include "formats/amr/amr.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #define LINE_BYTES 512

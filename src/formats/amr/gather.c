@@ -10,7 +10,6 @@
  * from, and of the rows of those that are divided by theirs what the file
  * has. */
 #include "formats/amr/amr.h"
-#include "volume/mask.h"
 #include "volume/refine.h"
 
 #include <math.h>

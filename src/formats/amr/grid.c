@@ -2,7 +2,6 @@
 #include "formats/amr/amr.h"
 #include "volume/mask.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -14,7 +14,6 @@
 #include "formats/array.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #define TAG_SEGMENTS 0x00620002u

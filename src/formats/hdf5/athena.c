@@ -20,7 +20,6 @@
 #if SNOW_HAVE_HDF5
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #define MOST_SETS 16

@@ -16,7 +16,6 @@
 #if SNOW_HAVE_HDF5
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Bytes of a name or text, and pairs in a list. */

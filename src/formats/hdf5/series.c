@@ -9,7 +9,6 @@
 
 #if SNOW_HAVE_HDF5
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -13,7 +13,6 @@
 
 #if SNOW_HAVE_HDF5
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

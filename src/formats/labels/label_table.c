@@ -7,9 +7,6 @@
 
 #include "io/source.h"
 
-#include <ctype.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define LINE 1024

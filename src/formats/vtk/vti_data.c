@@ -12,8 +12,6 @@
 #include "formats/vtk/vti.h"
 #include "io/filters/filters.h"
 
-#include <string.h>
-
 /* Reads a count that stands before the data. */
 static snow_status take_count(snow_source *source, const vti_header *header,
                               uint64_t *out) {

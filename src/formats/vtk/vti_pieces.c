@@ -9,7 +9,6 @@
 #include "formats/index/index.h"
 #include "formats/vtk/vti.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -13,7 +13,6 @@
 #include "formats/zarr/zarr.h"
 
 #include <stdio.h>
-#include <string.h>
 
 /* The most files, and chunks of a file, that are read for one volume. */
 #define MOST_PIECES ((int64_t)1 << 20)

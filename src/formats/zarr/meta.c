@@ -6,8 +6,6 @@
  * bits. */
 #include "formats/zarr/zarr.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 /* --- sizes and types ------------------------------------------------------ */

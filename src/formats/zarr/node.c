@@ -3,7 +3,6 @@
 #include "formats/zarr/zarr.h"
 
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 /* More than any metadata have; parsed JSON takes many times the size of its

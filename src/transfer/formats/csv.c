@@ -5,7 +5,6 @@
  * one is above 1. */
 #include "transfer/formats/tf.h"
 
-#include <stdio.h>
 #include <string.h>
 
 typedef struct row {

@@ -3,7 +3,6 @@
 #include "transfer/formats/tf.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The longest number that is parsed; a double needs 24 characters. */

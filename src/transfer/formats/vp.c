@@ -6,7 +6,6 @@
  * red, green, blue), values in data units. */
 #include "transfer/formats/tf.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* Reads the count of a list, and checks that it is a multiple of a point's. */
