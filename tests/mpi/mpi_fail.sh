@@ -16,7 +16,8 @@ job() {
 begun=()
 fails() {
     local at=.job${#begun[@]}
-    "${@:4}" >"$at.out" 2>"$at.err" </dev/null &
+    mkdir -p "$at.mpi"
+    OMPI_MCA_orte_tmpdir_base=$PWD/$at.mpi "${@:4}" >"$at.out" 2>"$at.err" </dev/null &
     begun+=("$!|$1|$2|$3")
     [ ${#begun[@]} -lt 4 ] || all_fail
 }

@@ -9,6 +9,8 @@ export OMP_NUM_THREADS=1
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_rmaps_base_oversubscribe=1
 export OMPI_MCA_hwloc_base_binding_policy=none
+# Where two have one folder, mpirun fails now and then as the other one makes it.
+export OMPI_MCA_orte_tmpdir_base=$WORK
 
 skip() {
     echo "skip   $*"
