@@ -8,19 +8,13 @@
 #define SNOW_BENCH_H
 
 #include "option_table.h"
+
+#include "base/base.h"
 #include "render/tested.h"
 
 #include <jansson.h>
 #include <snowglass/comm.h>
 #include <snowglass/snowglass.h>
-
-/* Returns from a function if a call in it fails. */
-#define BENCH_TRY(call)                         \
-    do {                                        \
-        snow_status bench_try_status = (call);  \
-        if (bench_try_status != SNOW_STATUS_OK) \
-            return bench_try_status;            \
-    } while (0)
 
 /* The verb: `argv[0]` is "bench".  Returns the tool's exit code. */
 int bench_main(int argc, char **argv);

@@ -269,7 +269,8 @@ def figures(runner, reference):
                change_least=1e3 * min(t[0] for t in runner.changing),
                change=middle(runner.changing, 0),
                change_cpu=middle(runner.changing, 1),
-               turns=len(runner.turning), pictures=runner.around, megabytes=runner.megabytes,
+               turns=len(runner.turning), pictures=runner.around,
+               megabytes=runner.megabytes,
                idle_megabytes=runner.idle)
     if reference and reference is not runner.picture:
         row["psnr"], row["psnr_scaled"] = pictures.psnr(runner.picture,

@@ -188,9 +188,9 @@ static snow_status find_value(const bench_volume *volume, double target,
     int low = 0, high = 254;
     while (low < high) {
         int middle = (low + high) / 2;
-        BENCH_TRY(snow_transfer_sparse_ratio(volume->transfer, volume->volume,
-                                             threshold_above(middle),
-                                             sparse_ratio));
+        SNOW_TRY(snow_transfer_sparse_ratio(volume->transfer, volume->volume,
+                                            threshold_above(middle),
+                                            sparse_ratio));
         if (*sparse_ratio >= target)
             high = middle;
         else

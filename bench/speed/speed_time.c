@@ -71,7 +71,7 @@ snow_status speed_render(speed_session *session, int index, snow_isa isa,
         return status == SNOW_STATUS_OK ? hand_over(made, image) : status;
     }
     if (!session->frames[index]) {
-        BENCH_TRY(snow_frame_new(session->context, &session->frames[index]));
+        SNOW_TRY(snow_frame_new(session->context, &session->frames[index]));
     }
     snow_status status = snow_frame_render(
         session->frames[index], session->volume, session->job->volume->transfer,
@@ -98,8 +98,8 @@ static bool has_encoded(const snow_stats *stats) {
 /* One picture, whose figures are kept unless it warms up. */
 static snow_status draw(speed_session *session, speed_row *row,
                         row_samples *samples, int step, bool warming) {
-    BENCH_TRY(speed_render(session, way_of(row), SNOW_ISA_AUTO, row->threads,
-                           session->job->threshold, step, NULL));
+    SNOW_TRY(speed_render(session, way_of(row), SNOW_ISA_AUTO, row->threads,
+                          session->job->threshold, step, NULL));
     const snow_stats *stats = speed_stats(session, way_of(row));
     row->stats = *stats;
     samples->spent += stats->seconds_frame;

@@ -69,7 +69,7 @@ static snow_status render_exact(speed_session *session, const speed_way *way,
     settings.light = SNOW_LIGHT_HEAD;
     settings.isa = SNOW_ISA_SCALAR;
     settings.threads = is_of_values(way) ? 0 : 1;
-    BENCH_TRY(snow_frame_new(session->context, &frame));
+    SNOW_TRY(snow_frame_new(session->context, &frame));
     snow_status status = snow_frame_render(
         frame, session->job->volume->volume, session->job->volume->transfer,
         speed_view(session, 0), &settings, out);
@@ -109,7 +109,7 @@ static snow_status verify_near(const verification *verifier, int way,
     const speed_case *job = verifier->session->job;
     double least = bounds->psnr[job->shade == SNOW_SHADE_PHONG][job->look];
     snow_image_difference difference = {.size = sizeof difference};
-    BENCH_TRY(snow_image_compare(exact, image, &difference));
+    SNOW_TRY(snow_image_compare(exact, image, &difference));
     /* Written so that a NaN is beyond every bound. */
     if (!(difference.psnr >= least) || !(difference.largest <= bounds->largest))
         return wrong(verifier, way,
@@ -234,8 +234,8 @@ static snow_status verify_sums(verification *verifier, int way,
     for (int i = 0; i < count; i++) {
         if (rows[i].threads == 1)
             continue;
-        BENCH_TRY(sum_of(verifier, way, SNOW_ISA_AUTO, rows[i].threads,
-                         verifier->session->job->threshold, &other));
+        SNOW_TRY(sum_of(verifier, way, SNOW_ISA_AUTO, rows[i].threads,
+                        verifier->session->job->threshold, &other));
         if (other != sum)
             return wrong(verifier, way, "another picture by %d threads",
                          rows[i].threads);

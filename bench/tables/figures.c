@@ -44,9 +44,9 @@ static snow_status plan(snow_comm *comm, const figure_job *job,
     snow_box parts[NODES_MOST];
     snow_volume *whole;
     snow_transfer *transfer = NULL;
-    BENCH_TRY(
-        snow_volume_wrap(context, snow_volume_get_info(job->volume->volume),
-                         snow_volume_voxels(job->volume->volume), &whole));
+    SNOW_TRY(snow_volume_wrap(context,
+                              snow_volume_get_info(job->volume->volume),
+                              snow_volume_voxels(job->volume->volume), &whole));
     snow_status status =
         snow_transfer_new_for_volume(whole, &bench_linear_look, &transfer);
     if (status == SNOW_STATUS_OK)
@@ -69,7 +69,7 @@ static snow_status open_slab(snow_comm *comm, const figure_job *job,
     const char *voxels = snow_volume_voxels(job->volume->volume);
     snow_extent part = {.size = sizeof part};
     snow_box box;
-    BENCH_TRY(plan(comm, job, &box));
+    SNOW_TRY(plan(comm, job, &box));
     memcpy(part.dims, info.dims, sizeof part.dims);
     memcpy(part.first, box.first, sizeof part.first);
     memcpy(part.count, box.count, sizeof part.count);
@@ -210,7 +210,7 @@ static snow_status measure(snow_context *context, const snow_network *network,
     *out = (figure_time){.seconds = INFINITY};
     for (int run = 0; run < runs; run++) {
         double begin = figure_progress_clock();
-        BENCH_TRY(
+        SNOW_TRY(
             snow_comm_run_simulated(context, nodes, network, be_node, job));
         if (job->least.seconds < out->seconds)
             *out = job->least;
@@ -231,7 +231,7 @@ static snow_status measure_way(snow_context *context, int runs,
                                figure_time *taken, double *largest) {
     job->expected = NULL;
     for (int n = 0; n < FIGURE_NODES; n++) {
-        BENCH_TRY(
+        SNOW_TRY(
             measure(context, network, figure_nodes[n], runs, job, &taken[n]));
         job->expected = job->kept;
         if (job->largest > *largest)

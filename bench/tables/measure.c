@@ -45,7 +45,7 @@ static snow_status begin_run(snow_context *context, const bench_volume *volume,
                              bench_run *run) {
     run->volume = volume;
     snow_view_init(&run->view);
-    BENCH_TRY(snow_view_from_name(context, "+z", &run->view));
+    SNOW_TRY(snow_view_from_name(context, "+z", &run->view));
     run->view.width = run->view.height = IMAGE_SIDE;
     run->view.zoom =
         snow_view_zoom_for_voxels(volume->volume, IMAGE_SIDE, IMAGE_SIDE);
@@ -84,7 +84,7 @@ static snow_status render(bench_run *run, bench_way way, double threshold,
 static snow_status verify(bench_run *run, bench_way first, double threshold) {
     uint64_t expected = 0, sum;
     for (int way = (int)first; way < BENCH_WAYS; way++) {
-        BENCH_TRY(render(run, (bench_way)way, threshold, &sum));
+        SNOW_TRY(render(run, (bench_way)way, threshold, &sum));
         if (way == (int)first)
             expected = sum;
         if (sum != expected) {
@@ -133,7 +133,7 @@ static snow_status time_ways(bench_run *run, double threshold, int runs,
     for (int i = 0; i < runs; i++)
         for (int way = 0; way < BENCH_WAYS; way++) {
             uint64_t sum;
-            BENCH_TRY(render(run, (bench_way)way, threshold, &sum));
+            SNOW_TRY(render(run, (bench_way)way, threshold, &sum));
             const snow_stats *stats = snow_frame_stats(run->frame);
             times[i][way] = times_of(stats);
             out->ea_bytes[way] = stats->ea_bytes;
@@ -158,7 +158,7 @@ snow_status bench_measure(snow_context *context, const bench_volume *volume,
                           const bench_options *options, double threshold,
                           int footprint, bench_row *out) {
     bench_run run;
-    BENCH_TRY(begin_run(context, volume, options, footprint, &run));
+    SNOW_TRY(begin_run(context, volume, options, footprint, &run));
     snow_status status = verify(&run, BENCH_ORIGINAL, 0);
     if (status == SNOW_STATUS_OK)
         status = verify(&run, BENCH_TESTED, threshold);

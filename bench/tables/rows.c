@@ -121,7 +121,7 @@ static snow_status do_row(snow_context *context, const bench_options *options,
                           const bench_paper_row *paper, json_t *list) {
     bench_volume volume;
     bench_row row = {0};
-    BENCH_TRY(bench_volume_open(context, paper->set, options, &volume));
+    SNOW_TRY(bench_volume_open(context, paper->set, options, &volume));
     snow_status status = bench_measure(
         context, &volume, options, paper->threshold, paper->footprint, &row);
     if (status == SNOW_STATUS_OK && list)

@@ -170,8 +170,8 @@ bool client_acknowledge(client *c, double took) {
     int quality = client_quality(c);
     note_painted(c, took);
     int waits = 0; /* 1: a picture does, for the link */
-    for (int i = 0; i < c->count; i++)
-        waits |= is_picture(c->queue[i]) && c->trip >= 2 * c->painted;
+    for (int i = 0; i < c->count && c->trip >= 2 * c->painted; i++)
+        waits |= is_picture(c->queue[i]);
     c->blocked += 0.2 * (waits - c->blocked);
     c->thin = c->webp && c->blocked > (c->thin ? 0.02 : 0.6);
     return c->thin != thin || client_quality(c) != quality;

@@ -52,7 +52,7 @@ typedef struct client {
     double blocked; /* the share of them, of late */
     int under_way;  /* pictures that were sent and not acknowledged: */
     sent_picture sent_pictures[CLIENT_UNDER_WAY]; /* the oldest first */
-    double trip;    /* seconds from a picture to its acknowledgement, of late: */
+    double trip; /* seconds from a picture to its acknowledgement, of late: */
     double painted; /* and of these the page's own, once it had the picture */
     int step;       /* of quality, from that which all begin with */
     int trips;      /* that were measured since it changed */

@@ -110,7 +110,8 @@ SNOW_AVX512_INLINE __m512i snow_avx512_entries(const uint64_t *table,
     const double *from = (const double *)(const void *)table;
     __m128d z[4];
     for (int n = 0; n < 4; n++)
-        z[n] = _mm_loadh_pd(_mm_load_sd(from + at[8 * n]), from + at[8 * n + 1]);
+        z[n] =
+            _mm_loadh_pd(_mm_load_sd(from + at[8 * n]), from + at[8 * n + 1]);
     return _mm512_shuffle_epi8(
         _mm512_castpd_si512(_mm512_insertf64x4(
             _mm512_castpd256_pd512(_mm256_set_m128d(z[1], z[0])),
