@@ -26,7 +26,7 @@ export class Cube {
             onclick: () => actions.view(this.names[i])}));
         this.element = make('div', {className: 'cube', role: 'group', 'aria-label': 'Directions', hidden: true},
             ...this.faces);
-        store.onChange(() => this.draw());
+        store.onCamera(() => this.draw());
     }
 
     /** Of a volume.

@@ -218,6 +218,7 @@ export class Measure {
         });
         engine.on('info', () => this.update());
         store.onChange(() => this.update());
+        store.onCamera(() => this.draw());
         views.addEventListener('pointerdown', event => this.down(event), true);
         views.addEventListener('pointermove', event => this.move(event), true);
         views.addEventListener('pointerup', event => this.up(event), true);

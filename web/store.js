@@ -8,11 +8,17 @@
 
 import {lookWith} from './look.js';
 
+export const FEW = 8; // drafts whose figures nobody could read
+
 const HISTORY = 200;
 const TOGETHER = 600; // ms in which changes of the same keys are one step
 
 /** What is of this page alone, and no part of the picture (slices.js). */
 const OWN = 'slices';
+
+/** What only says from where the volume is seen.
+ * @type {Key[]} */
+const CAMERA = ['azimuth', 'elevation', 'roll', 'zoom', 'target'];
 
 /** @typedef {import('./types').Keys} Keys */
 /** @typedef {import('./types').Key} Key */
@@ -83,19 +89,38 @@ export class Store {
         this.after = [];
         /** @type {((keys: Readonly<Keys>) => void)[]} */
         this.hearers = [];
+        /** @type {((keys: Readonly<Keys>) => void)[]} */
+        this.watchers = [];
+        this.moved = false; // the camera, since they were called
         /** @type {'begun'|'changed'|null} */
         this.gesture = null;
         this.last = {names: '', at: 0};
         engine.on('state', message => this.take(message));
+        engine.on('picture', () => this.moved && this.shown());
     }
 
-    /** @param {(keys: Readonly<Keys>) => void} hear */
+    /** After each change; of those that a drag makes to the camera, when it ends.
+     * @param {(keys: Readonly<Keys>) => void} hear */
     onChange(hear) {
         this.hearers.push(hear);
     }
 
+    /** After each change; in a drag of the camera with each picture, as what shows the
+     * camera then is drawn with it, and the processor is left to the pictures.
+     * @param {(keys: Readonly<Keys>) => void} hear */
+    onCamera(hear) {
+        this.watchers.push(hear);
+    }
+
     changed() {
         for (const hear of this.hearers)
+            hear(this.keys);
+        this.shown();
+    }
+
+    shown() {
+        this.moved = false;
+        for (const hear of this.watchers)
             hear(this.keys);
     }
 
@@ -207,7 +232,10 @@ export class Store {
         this.keys = merged(this.keys, changes);
         if (named(sent).length)
             this.engine.set(sent);
-        this.changed();
+        if (this.gesture && named(changes).every(key => CAMERA.includes(key)))
+            this.moved = true;
+        else
+            this.changed();
     }
 
     /** Becomes another recipe whole, in one step; the size is the window's.

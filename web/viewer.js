@@ -16,14 +16,13 @@ import {Panel} from './panel/panel.js';
 import {Pointer, TOOLS} from './pointer.js';
 import {isLook} from './panel/presets.js';
 import {Slices} from './slices.js';
-import {Store, known} from './store.js';
+import {FEW, Store, known} from './store.js';
 import {Times} from './panel/time.js';
 import {leftOut, sifted} from './valid.js';
 
 /** @typedef {import('./types').Keys} Keys */
 
 const SIDE_MOST = 4096;
-const FEW = 8; // drafts whose figures nobody could read
 const LEVELS = ['draft', 'almost final', 'final'];
 
 const given = new URLSearchParams(location.hash.slice(1));

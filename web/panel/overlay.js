@@ -34,7 +34,7 @@ export class Overlay {
         this.held = null;
         this.canvas = make('canvas', {className: 'over', 'aria-hidden': 'true'});
         this.handles = Array.from({length: HANDLES}, (_, i) => this.handle(i));
-        store.onChange(() => this.draw());
+        store.onCamera(() => this.draw());
     }
 
     get elements() {
@@ -54,12 +54,14 @@ export class Overlay {
     }
 
     draw() {
-        const {canvas: {clientWidth: width, clientHeight: height}, size} = this.pointer;
-        this.size = `${size}`;
-        const {canvas, store: {info}} = this;
+        const {canvas, pointer, store: {info, clipping}} = this;
+        this.size = `${pointer.size}`;
+        canvas.hidden = !(this.slices.keys && info?.slices && this.slices.hasLines); // empty, it costs as much
+        if (canvas.hidden && !clipping && !this.grips.length)
+            return; // nor is the page laid out to ask it for its size
+        const {clientWidth: width, clientHeight: height} = pointer.canvas;
         if (!info || !width)
             return;
-        canvas.hidden = !(this.slices.keys && info.slices && this.slices.hasLines); // empty, it costs as much
         const g = canvas.hidden ? null : surface(canvas)?.g;
         if (g) {
             g.translate(width / 2 - this.pointer.shift, height / 2);

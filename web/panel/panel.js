@@ -11,7 +11,7 @@ import {MODE_NAMES, VIEWS} from '../keys.js';
 import {mixed, overlayKeys} from '../look.js';
 import {axisNames} from './overlay.js';
 import {NO_SHAPE, Presets} from './presets.js';
-import {known} from '../store.js';
+import {FEW, known} from '../store.js';
 
 /** @typedef {import('../types').Keys} Keys */
 /** @typedef {import('../types').Label} Label */
@@ -66,6 +66,13 @@ export class Panel {
         this.element = make('aside', {className: 'panel', 'aria-label': 'Controls'});
         /** @type {((keys: Readonly<Keys>) => void)[]} */
         this.updates = [];
+        /** Of the camera.
+         * @type {((keys: Readonly<Keys>) => void)[]} */
+        this.turns = [];
+        store.onCamera(keys => {
+            if (!store.gesture || store.frames % FEW === 0)
+                this.turns.forEach(each => each(keys));
+        });
     }
 
     get info() {
@@ -77,6 +84,7 @@ export class Panel {
         const {live, dims} = this.info; // a simulation knows its own data
         this.whole = dims;
         this.updates = [];
+        this.turns = [];
         this.editor.renew();
         this.gradient.renew();
         this.element.replaceChildren(this.channels.element, this.presets.build(), this.look(),
@@ -88,7 +96,7 @@ export class Panel {
 
     update() {
         if (this.store.info)
-            for (const each of this.updates)
+            for (const each of [...this.updates, ...this.turns])
                 each(this.store.keys);
         this.editor.follow();
         this.gradient.follow();
@@ -119,8 +127,8 @@ export class Panel {
      * @template {HTMLInputElement|HTMLSelectElement} T
      * @param {T} field
      * @param {(keys: Readonly<Keys>) => string|number} of */
-    kept(field, of) {
-        this.follow(keys => show(field, of(keys)));
+    kept(field, of, list = this.updates) {
+        list.push(keys => show(field, of(keys)));
         return field;
     }
 
@@ -216,9 +224,9 @@ export class Panel {
                     `View from ${name}` + (info.medical && i < VIEWS.length ? ` (${i + 1})` : ''), () => actions.view(name))));
         const angles = /** @type {const} */ (['azimuth', 'elevation', 'roll']).map(key => this.kept(
             number(`${key} in degrees`, value => store.set({[key]: value})),
-            keys => short(keys[key] ?? 0)));
+            keys => short(keys[key] ?? 0), this.turns));
         const zoom = this.kept(number('zoom', value => value > 0 && store.set({zoom: value})),
-            keys => short(keys.zoom ?? 1));
+            keys => short(keys.zoom ?? 1), this.turns);
         const height = this.kept(number('height, a factor', value => value > 0 && store.set({'z-scale': value})),
             keys => keys['z-scale'] ?? '');
         const fov = this.kept(number('angle of the perspective in degrees',

@@ -10,6 +10,7 @@ const area = ({width, height}) => width * height;
 export async function layouts(tools) {
     const page = await tools.open();
     await cube(tools, page);
+    await dragged(tools, page);
     await arranged(tools, page);
     await zoomed(tools, page);
     await lined(tools, page);
@@ -42,6 +43,30 @@ async function cube({check, rest}, page) {
     await page.getByLabel('cube of directions').uncheck();
     check('the cube can be hidden', await page.locator('.cube button:visible').count() === 0);
     await page.getByLabel('cube of directions').check();
+}
+
+/** While the camera is dragged the page does not change but for what shows the camera, which
+ * follows the pictures: a processor that draws both has no time for more. */
+async function dragged({check, rest}, page) {
+    await page.evaluate(() => {
+        const {store} = window.snowglass;
+        window.changes = 0;
+        store.onChange(() => window.changes++);
+        store.begin();
+        store.set({azimuth: 50});
+    });
+    await page.waitForFunction(() => !window.snowglass.store.moved);
+    const turn = () => page.getByRole('button', {name: 'look from left'}).evaluate(
+        element => new DOMMatrix(getComputedStyle(element).transform).e / 18);
+    const during = await turn(), expected = -Math.sin(50 * Math.PI / 180); // it is seen from the left
+    await page.evaluate(() => window.snowglass.store.set({azimuth: -30}));
+    const changes = await page.evaluate(() => window.changes);
+    await page.evaluate(() => window.snowglass.store.end());
+    check('in a drag of the camera nothing else is brought up to date', changes === 0, changes);
+    check('but the cube, with its picture', Math.abs(during - expected) < 0.01, `${during} ${expected}`);
+    check('and the angles when it ends', await page.getByLabel('azimuth in degrees').inputValue() === '-30');
+    await page.evaluate(() => window.snowglass.store.set({azimuth: 0}));
+    await rest(page);
 }
 
 /** Each layout by its button. */
