@@ -112,13 +112,18 @@ export class ServerEngine {
         this.say({t: 'moving', on});
     }
 
-    /** Changes of a recipe; null takes a key out.  Sent at once, but not more often
-     * than each FRAME.  One that waited does not make those of all later frames wait.
+    /** Changes of a recipe; null takes a key out.  Sent once what makes them has ended, as a
+     * timer would wait for the page to be painted, but not more often than each FRAME.  One that
+     * waited does not make those of all later frames wait.
      * @param {Changes} changes */
     set(changes) {
         if (!this.waiting) {
             this.since = performance.now();
-            setTimeout(() => this.flush(), this.flushed + FRAME - this.since);
+            const rest = this.flushed + FRAME - this.since;
+            if (rest > 0)
+                setTimeout(() => this.flush(), rest);
+            else
+                queueMicrotask(() => this.flush());
         }
         this.waiting = {...this.waiting, ...changes};
     }

@@ -177,10 +177,17 @@ bool client_acknowledge(client *c, double took) {
     return c->thin != thin || client_quality(c) != quality;
 }
 
+/* A page that is slow itself, not its link, gets a picture when it has painted
+ * the one before: another would only grow old there. */
+static int most_under_way(const client *c) {
+    return c->trip < 1.5 * c->painted ? 1 : CLIENT_UNDER_WAY;
+}
+
 /* The index of the next message that may be sent, or -1. */
 static int next_of(const client *c) {
+    const int most = most_under_way(c);
     for (int i = 0; i < c->count; i++)
-        if (!is_picture(c->queue[i]) || c->under_way < CLIENT_UNDER_WAY)
+        if (!is_picture(c->queue[i]) || c->under_way < most)
             return i;
     return -1;
 }

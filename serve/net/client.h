@@ -1,7 +1,8 @@
 /* client.h - a page: what waits for it, what was sent, what it has painted.
  *
- * A page that is slow has at most two pictures under way, and of those that
- * wait only the newest; other pages do not notice.  All functions are of the
+ * A page on a slow link has at most two pictures under way, one that is slow
+ * itself has one, and of those that wait only the newest; other pages do not
+ * notice.  All functions are of the
  * thread that serves sockets. */
 #ifndef CLIENT_H
 #define CLIENT_H

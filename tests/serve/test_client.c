@@ -352,6 +352,22 @@ static void a_slow_page_has_no_thin_link(void **state) {
     assert_false(c.thin);
 }
 
+/* What it cannot paint yet would grow old there. */
+static void a_slow_page_has_one_picture_under_way(void **state) {
+    (void)state;
+    static const struct {
+        int painted, most;
+    } cases[] = {{55, 1}, {10, CLIENT_UNDER_WAY}};
+    for (int i = 0; i < 2; i++) {
+        make_trips(cases[i].painted);
+        for (int k = 0; k <= CLIENT_UNDER_WAY; k++) {
+            queue(&c, MESSAGE_PICTURE, 0);
+            send_all(&c);
+        }
+        assert_int_equal(c.under_way, cases[i].most);
+    }
+}
+
 static void too_much_that_waits_is_noted(void **state) {
     (void)state;
     for (int i = 0; i < CLIENT_QUEUE_MOST; i++)
@@ -389,6 +405,7 @@ int main(void) {
         TEST(a_picture_goes_in_pieces_with_the_own_n),
         TEST(a_link_is_thin_while_pictures_wait),
         TEST(a_slow_page_has_no_thin_link),
+        TEST(a_slow_page_has_one_picture_under_way),
         TEST(too_much_that_waits_is_noted),
         TEST(a_message_in_pieces_has_a_limit),
         TEST(quality_follows_the_trips),
