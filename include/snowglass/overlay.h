@@ -23,10 +23,11 @@ SNOW_API void snow_overlay_set_picture(
 /* Returns the pixels of a capital letter that suits pictures of the size. */
 SNOW_API double snow_overlay_text_height(const snow_overlay *overlay);
 
-/* Adds a line of UTF-8 (letters of Latin-1), whose capitals are `height` pixels
- * high. (x, y) is the pixel where the point (share_x, share_y) of its box lies:
- * 0, 0 is the upper left corner, 1, 1 the lower right one. Errors: BAD_USAGE (a
- * number that is not finite, a height of 0 or below). */
+/* Adds a line of UTF-8 (letters of Latin-1 and Greek; a box for others, with a
+ * warning), whose capitals are `height` pixels high. (x, y) is the pixel where
+ * the point (share_x, share_y) of its box lies: 0, 0 is the upper left corner,
+ * 1, 1 the lower right one. Errors: BAD_USAGE (a number that is not finite, a
+ * height of 0 or below). */
 SNOW_API snow_status snow_overlay_text(snow_overlay *overlay, double x,
     double y, double share_x, double share_y, double height, const char *text);
 

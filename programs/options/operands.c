@@ -46,6 +46,10 @@ static int refuse_words(const options *out, const verb_row *verb, bool named) {
         return fail_usage("%s: is one word too many for %s; give one file or, "
                           "of slices, their folder or a pattern in quotes",
                           extra, verb->name);
+    if (out->legend.bar && !out->legend.title && access(extra, F_OK) != 0)
+        return fail_usage("%s: is one word too many for %s; the title of a "
+                          "legend follows a =: --legend=\"%s\"",
+                          extra, verb->name, extra);
     return fail_usage("%s: is one word too many for %s; give snowglass %s %s",
                       extra, verb->name, verb->name, verb->usage);
 }

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #define TITLE_BYTES 256
+#define TITLE_MOST 1000 /* bytes of --title */
 
 /* Pictures of sums leave room for numbers of such a magnitude. */
 #define UNKNOWN 10000
@@ -34,6 +35,10 @@ int annotations_check(const options *opts) {
         return fail_usage("%s: --%s cannot be drawn into a file of floats; "
                           "remove it or name a .png",
                           opts->output, wanted);
+    if (opts->title && strlen(opts->title) > TITLE_MOST)
+        return fail_usage("--title: has %zu bytes: at most %d are drawn; "
+                          "shorten it",
+                          strlen(opts->title), TITLE_MOST);
     return CONTINUE;
 }
 
@@ -175,9 +180,9 @@ static void write_time(const picture_annotations *annotations, int64_t step,
 static snow_status add_title(const picture_annotations *annotations,
                              int64_t step, snow_overlay *overlay) {
     const options *opts = annotations->opts;
-    char text[2 * TITLE_BYTES], time[TITLE_BYTES];
+    char text[TITLE_MOST + 1 + TITLE_BYTES], time[TITLE_BYTES];
     write_time(annotations, step, time);
-    snprintf(text, sizeof text, "%.250s%s%s", opts->title ? opts->title : "",
+    snprintf(text, sizeof text, "%s%s%s", opts->title ? opts->title : "",
              opts->title && *time ? "\n" : "", time);
     return snow_overlay_title(overlay, text);
 }

@@ -35,9 +35,28 @@ snow_status snow_overlay_text(snow_overlay *overlay, double x, double y,
     double base = y + (1 - share_y) * height;
     if (!*text)
         return SNOW_STATUS_OK;
+    if (!overlay->boxes && !snow_font_has(text)) {
+        snow_notify(overlay->context,
+                    "%s: has letters that the font lacks, which are drawn as "
+                    "boxes; it has those of Western Europe, and Greek",
+                    text);
+        overlay->boxes = true;
+    }
     SNOW_TRY(snow_begin_strokes(overlay, height));
     return snow_font_draw(overlay, floor(left) + 0.5, floor(base) + 0.5, height,
                           text);
+}
+
+/* Takes the first `length` bytes of a text, or as many letters as there is
+ * room for, and "..." then. */
+static void take_line(const char *text, size_t length, char *line,
+                      size_t room) {
+    const bool cut = length >= room;
+    if (cut)
+        length = room - 4;
+    while (cut && length > 0 && (text[length] & 0xc0) == 0x80)
+        length--;
+    snprintf(line, room, "%.*s%s", (int)length, text, cut ? "..." : "");
 }
 
 /* Adds lines from `y` on, in heights of letters; those that are wider than the
@@ -47,10 +66,9 @@ static snow_status add_lines(snow_overlay *overlay, double y,
     const double height = snow_overlay_text_height(overlay);
     const double width = overlay->width - overlay->strip;
     for (; *text; y += 1.7) {
-        char line[256];
+        char line[1024];
         size_t length = strcspn(text, "\n");
-        snprintf(line, sizeof line, "%.*s", (int)fmin((double)length, 255),
-                 text);
+        take_line(text, length, line, sizeof line);
         snow_font_shorten(width / height - 1.6, line);
         SNOW_TRY(snow_overlay_text(overlay, 0.8 * height, y * height, 0, 0,
                                    height, line));
@@ -72,10 +90,6 @@ snow_status snow_overlay_title(snow_overlay *overlay, const char *text) {
     }
     if (overlay->shape_count == first)
         snow_notify(overlay->context, "the picture has no room for the title");
-    if (!snow_font_has(text))
-        snow_notify(overlay->context,
-                    "the title has letters that the font lacks, which are "
-                    "drawn as boxes; it has those of Western Europe");
     return SNOW_STATUS_OK;
 }
 

@@ -63,26 +63,86 @@ static const char *const glyphs[] = {
 static_assert(sizeof glyphs / sizeof *glyphs == 127 - ' ',
               "a glyph for each character");
 
-/* What else has a glyph; dashes, too. */
+/* What else has a glyph: letters of the Nordic countries, Greek, and signs of
+ * units and formulas.  Characters of one shape share it. */
 static const struct {
-    unsigned code;
-    const char *glyph;
-} symbols[] = {{0xa0, ""},
-               {0xb0, "o090c3c39"},
-               {0xb1, "-3a34-0767-0161"},
-               {0xb2, "~0b0c3c3b07-0737"},
-               {0xb3, "~0c3c3a1a~1a3a3707"},
-               {0xb5, "-080w~08026062-6860"},
-               {0xb7, ".06"},
-               {0xb9, "-0b1c17"},
-               {0xd7, "-0862-0268"},
-               {0xf7, "-0565.38.32"},
-               {0x3bc, "-080w~08026062-6860"},
-               {0x2013, "-0565"},
-               {0x2014, "-0595"},
-               {0x2019, "-0c09"},
-               {0x207b, "-0939"},
-               {0x2212, "-0565"}};
+    const char *letters, *glyph;
+} symbols[] = {
+    {"\u00a0", ""},
+    {"°", "o090c3c39"},
+    {"±", "-3a34-0767-0161"},
+    {"·∙⋅", ".06"},
+    {"×", "-0862-0268"},
+    {"÷", "-0565.38.32"},
+    {"–−", "-0565"},
+    {"—", "-0595"},
+    {"‘’′", "-0c09"},
+    {"“”″", "-0c09-3c39"},
+    {"…", ".00.30.60"},
+    {"Æ", "-005c9c-5c5090-5686-2555"},
+    {"æ", "o08484000-4494~949848409092"},
+    {"Ø", "o0c8c8000-008c"},
+    {"ø", "o08686000-0068"},
+    {"Ð", "-101c~1c8c8010-0646"},
+    {"ð", "o07676000~2c5a6863-195c"},
+    {"Þ", "-000c~09797303"},
+    {"þ", "-0c0wo08686000"},
+    {"ß", "-0900~090c6c6727~27777020"},
+    {"Γ", "-000c7c"},
+    {"Δ∆", "-004c8000"},
+    {"Θϴ", "o0c8c8000-2666"},
+    {"Λ", "-004c80"},
+    {"Ξ", "-0c7c-1666-0070"},
+    {"Π∏", "-000c7c70"},
+    {"Σ∑", "-7c0c460070"},
+    {"Φ", "-4c40o0a8a8202"},
+    {"Ψ", "-4c40~0c04848c"},
+    {"Ω\u2126", "-0030~30040c8c8450-5080"},
+    {"α", "~785000085870"},
+    {"β", "-090w~090c6c6727~27777000"},
+    {"γ", "-083z-683z3w"},
+    {"δ", "o07676000~5c0c196864"},
+    {"εϵ", "~5748080434~3404005051"},
+    {"ζ", "-0c5c~5c0800505x3w"},
+    {"η", "-0800~0508686w"},
+    {"θϑ", "o0c6c6000-0666"},
+    {"ι", "~08002021"},
+    {"κ", "-0800-5803-2560"},
+    {"λ", "-0c1c70-3700"},
+    {"µμ", "-080w~08026062-6860"},
+    {"ν", "-083068"},
+    {"ξ", "-1c5c~3c0c0747~470700505x3w"},
+    {"π", "-0878-2820-5850"},
+    {"ρϱ", "-040wo08686000"},
+    {"σ", "o08686000-3888"},
+    {"ς", "~67580800505x3w"},
+    {"τ", "-0868~38305051"},
+    {"υ", "~08006068"},
+    {"φϕ", "-3a3wo08686000"},
+    {"χ", "-086w-680w"},
+    {"ψ", "-3a3w~08006068"},
+    {"ω", "~1806004045~4540808678"},
+    {"∂", "~1b3c6c60000766"},
+    {"∇", "-0c8c400c"},
+    {"∞", "o0308386393986833"},
+    {"√", "-0516306c9c"},
+    {"∥‖", "-0c00-3c30"},
+    {"⊥⟂", "-0080-4c40"},
+    {"⊙☉", "o0a8a8202.46"},
+    {"≈", "~03164265~071a4669"},
+    {"≠", "-0464-0868-115b"},
+    {"≤", "-6b0763-0060"},
+    {"≥", "-0b6703-0060"},
+    {"→", "-0686-598653"},
+    {"←", "-8606-390633"}};
+
+/* What looks like a letter above, and a digit raised or lowered: each with the
+ * character in the same place. */
+static const char alike[] = "ΑΒΕΖΗΙΚΜΝΟΡΤΥΧο\u212a\u212b";
+static const char latin[] = "ABEZHIKMNOPTYXoK\xc5";
+static const char raised[] = "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻⁽⁾";
+static const char lowered[] = "₀₁₂₃₄₅₆₇₈₉₊₋₍₎";
+static const char digits[] = "0123456789+-()";
 
 static const char box[] = "-000c7c7000";
 
@@ -96,6 +156,7 @@ static const char marked[] = "gactdr ,gacdgacd tgactd  gacda  "
 typedef struct marked_letter {
     const char *glyph, *mark;
     double lift;
+    double size, rise; /* of the whole: 1 and 0, or of a small digit */
 } marked_letter;
 
 /* Passes a character of UTF-8; a byte that begins none is of Latin-1. */
@@ -114,26 +175,51 @@ static unsigned decode(const char **text) {
     return code;
 }
 
+/* Where a character stands in a text, or -1. */
+static int place_in(const char *text, unsigned code) {
+    for (int n = 0; *text; n++)
+        if (decode(&text) == code)
+            return n;
+    return -1;
+}
+
+/* The character that is drawn for another. */
+static unsigned drawn_for(unsigned code, marked_letter *found) {
+    int place = place_in(alike, code);
+    if (place >= 0)
+        return (unsigned char)latin[place];
+    const bool low = (place = place_in(raised, code)) < 0;
+    if (low && (place = place_in(lowered, code)) < 0)
+        return code;
+    found->size = 0.55;
+    found->rise = low ? -2 : CAPITAL - 0.55 * CAPITAL;
+    return (unsigned char)digits[place];
+}
+
+/* A letter of Latin-1 from U+C0 on: another one and its mark. */
+static void add_mark(unsigned code, marked_letter *found) {
+    /* Above a small letter 6 wide: grave, acute, circumflex, tilde,
+     * diaeresis and ring; and the cedilla. */
+    static const char names[] = "gactdr,";
+    static const char *const marks[] = {"-2c4a",     "-4c2a",  "-1a3c5a",
+                                        "~0a2c4a6c", ".1b.5b", "o1a1d5d5a",
+                                        "-303z2y"};
+    char base = bases[code - 0xc0], mark = marked[code - 0xc0];
+    const char *at = strchr(names, mark);
+    found->glyph = base == 'i' ? "-0800" : glyphs[base - 32];
+    found->mark = at && *at ? marks[at - names] : "";
+    found->lift = base < 'a' && mark != ',' ? 3 : 0;
+}
+
 static marked_letter next_letter(const char **text) {
-    unsigned code = decode(text);
-    marked_letter found = {box, "", 0};
+    marked_letter found = {box, "", 0, 1, 0};
+    const unsigned code = drawn_for(decode(text), &found);
     if (code >= 32 && code < 127)
         found.glyph = glyphs[code - 32];
-    if (code >= 0xc0 && code <= 0xff) {
-        char base = bases[code - 0xc0], mark = marked[code - 0xc0];
-        found.glyph = base == 'i' ? "-0800" : glyphs[base - 32];
-        /* Above a small letter 6 wide: grave, acute, circumflex, tilde,
-         * diaeresis and ring; and the cedilla. */
-        static const char names[] = "gactdr,";
-        static const char *const marks[] = {"-2c4a",     "-4c2a",  "-1a3c5a",
-                                            "~0a2c4a6c", ".1b.5b", "o1a1d5d5a",
-                                            "-303z2y"};
-        const char *at = strchr(names, mark);
-        found.mark = at && *at ? marks[at - names] : "";
-        found.lift = base < 'a' && mark != ',' ? 3 : 0;
-    }
-    for (size_t n = 0; n < sizeof symbols / sizeof *symbols; n++)
-        if (symbols[n].code == code)
+    else if (code >= 0xc0 && code <= 0xff)
+        add_mark(code, &found);
+    for (size_t n = 0; code > 127 && n < sizeof symbols / sizeof *symbols; n++)
+        if (place_in(symbols[n].letters, code) >= 0)
             found.glyph = symbols[n].glyph;
     return found;
 }
@@ -168,8 +254,10 @@ static double glyph_width(const char *glyph) {
 
 double snow_font_width(const char *text) {
     double width = 0;
-    while (*text)
-        width += glyph_width(next_letter(&text).glyph) + SPACE;
+    while (*text) {
+        const marked_letter l = next_letter(&text);
+        width += l.size * glyph_width(l.glyph) + SPACE;
+    }
     return fmax(width - SPACE, 0) / CAPITAL;
 }
 
@@ -284,15 +372,19 @@ static snow_status draw_glyph(pen *p, const char *glyph) {
 
 snow_status snow_font_draw(snow_overlay *overlay, double x, double y,
                            double height, const char *text) {
-    pen p = {.overlay = overlay, .x = x, .y = y, .unit = height / CAPITAL};
+    const double unit = height / CAPITAL;
     while (*text) {
-        marked_letter l = next_letter(&text);
+        const marked_letter l = next_letter(&text);
+        pen p = {.overlay = overlay,
+                 .x = x,
+                 .y = y - l.rise * unit,
+                 .unit = l.size * unit};
         pen above = p;
         above.x += (glyph_width(l.glyph) - 6) / 2 * p.unit;
         above.y -= l.lift * p.unit;
         SNOW_TRY(draw_glyph(&p, l.glyph));
         SNOW_TRY(draw_glyph(&above, l.mark));
-        p.x += (glyph_width(l.glyph) + SPACE) * p.unit;
+        x += (l.size * glyph_width(l.glyph) + SPACE) * unit;
     }
     return SNOW_STATUS_OK;
 }

@@ -23,6 +23,7 @@ struct snow_overlay {
     bool grey;               /* no shape has a colour */
     const snow_image *below; /* the picture that hides edges, or NULL */
     double strip;            /* pixels at the right that bars take */
+    bool boxes;              /* letters that the font lacks were noted */
     snow_shape *shapes;
     size_t shape_count;
     float *numbers;
@@ -44,7 +45,7 @@ snow_status snow_overlay_rows(snow_overlay *overlay, int x0, int y0, int x1,
 bool snow_overlay_meets(const snow_overlay *overlay, size_t first,
                         size_t before);
 
-/* --- font.c: a stroke font of any size: letters of Latin-1, as UTF-8 ---
+/* --- font.c: a stroke font of any size: letters of UTF-8 ---
 
  * Width of a line of text whose capitals are 1 high, between the middles of the
  * outermost strokes of its first and last letter. */

@@ -272,6 +272,41 @@ static void letters_of_latin_1_have_their_marks(void **state) {
     assert_true(snow_font_has("\xc3\xa9 7.5 \xc2\xb5m\nbelow"));
 }
 
+/* Unicode's own pairs: Greek capitals that look like Latin ones, signs whose
+ * decomposition is a letter (Angstrom, ohm, kelvin), and both micro signs. */
+static void characters_of_one_shape_are_one(void **state) {
+    image_fixture *f = *state;
+    static const char *const pairs[][2] = {
+        {"Α", "A"},      {"Ρ", "P"}, {"Χ", "X"}, {"ο", "o"}, {"\u212b", "Å"},
+        {"\u2126", "Ω"}, {"µ", "μ"}, {"∆", "Δ"}, {"−", "–"}, {"\u212a", "K"}};
+    for (size_t n = 0; n < sizeof pairs / sizeof *pairs; n++) {
+        assert_true(snow_font_has(pairs[n][0]));
+        assert_true(fabs(snow_font_width(pairs[n][0]) -
+                         snow_font_width(pairs[n][1])) < 1e-12);
+        assert_int_equal(strokes_of(f, pairs[n][0]),
+                         strokes_of(f, pairs[n][1]));
+    }
+    assert_true(snow_font_width("⁸") < 0.6 * snow_font_width("8"));
+    assert_int_equal(strokes_of(f, "₈"), strokes_of(f, "8"));
+}
+
+/* 1,020 bytes of a line are drawn, or as many as are whole letters, and "..."
+ * then.  A Gamma has two strokes. */
+static void endless_titles_end_with_dots(void **state) {
+    image_fixture *f = *state;
+    char title[3002] = "l";
+    for (int at = 1; at < 3000; at += 2)
+        memcpy(title + at, "\xce\x93", 2);
+    for (int first = 0; first < 2; first++) {
+        snow_overlay *overlay = support_overlay(f->context, 8000, 64);
+        assert_int_equal(snow_overlay_title(overlay, title + first),
+                         SNOW_STATUS_OK);
+        size_t strokes = first ? 2 * 510 + 3 : 1 + 2 * 509 + 3;
+        assert_int_equal(overlay->number_count, 4 * strokes);
+        snow_overlay_free(overlay);
+    }
+}
+
 static void long_texts_are_shortened(void **state) {
     (void)state;
     char text[] = "\xc3\xa9\xc3\xa9\xc3\xa9\xc3\xa9\xc3\xa9\xc3\xa9";
@@ -338,6 +373,8 @@ int main(void) {
         HERE(edges_behind_are_hidden_by_the_picture),
         HERE(axes_have_ticks_at_their_coordinates),
         HERE(letters_of_latin_1_have_their_marks),
+        HERE(characters_of_one_shape_are_one),
+        HERE(endless_titles_end_with_dots),
         cmocka_unit_test(long_texts_are_shortened),
         HERE(axes_keep_off_others),
         HERE(numbers_and_names_of_axes_stay_in_the_picture)};

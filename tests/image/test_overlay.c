@@ -154,35 +154,73 @@ static float *draw_alone(const snow_overlay *overlay, int piece) {
     return pixels;
 }
 
-/* Every character leaves something, within its own box and a border. */
+/* A text of one character leaves something, within its own box and a border. */
+static void check_in_its_box(const image_fixture *f, const char *text,
+                             double height) {
+    int side = (int)(4 * height);
+    snow_overlay *overlay = support_overlay(f->context, side, side);
+    double width = height * snow_font_width(text);
+    assert_int_equal(
+        snow_overlay_text(overlay, height, height, 0, 0, height, text),
+        SNOW_STATUS_OK);
+    float *pixels = draw_alone(overlay, side);
+    double border = 2.7 + 0.15 * height, most = 0;
+    for (int y = 0; y < side; y++)
+        for (int x = 0; x < side; x++) {
+            const float *pixel = pixels + 4 * (y * side + x);
+            most = fmax(most, (double)pixel[0]);
+            if (pixel[3] > 0)
+                assert_true(x > height - border &&
+                            x < height + width + border &&
+                            y > height - 0.2 * height - border &&
+                            y < 2 * height + 0.4 * height + border);
+        }
+    if (!(most > 0.7))
+        fail_msg("%s at %g: %g", text, height, most);
+    free(pixels);
+    snow_overlay_free(overlay);
+}
+
+static const char *const characters[] = {
+    "Æ", "æ", "Ø", "ø", "Ð", "ð", "Þ", "þ", "ß", "Γ", "Δ", "Θ", "Λ", "Ξ", "Π",
+    "Σ", "Φ", "Ψ", "Ω", "α", "β", "γ", "δ", "ε", "ζ", "η", "θ", "ι", "κ", "λ",
+    "μ", "ξ", "π", "ρ", "σ", "ς", "τ", "υ", "φ", "χ", "ψ", "ω", "∂", "∇", "∞",
+    "√", "∥", "⊥", "⊙", "≈", "≠", "≤", "≥", "→", "←", "⁰", "¹", "²", "³", "⁴",
+    "⁵", "⁶", "⁷", "⁸", "⁹", "⁻", "⁺", "₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇",
+    "₈", "₉"};
+
+enum { SIGNS = sizeof characters / sizeof *characters, ASCII = 126 - ' ' };
+
 static void every_character_is_drawn_in_its_box(void **state) {
     image_fixture *f = *state;
-    for (double height = 9; height < 120; height *= 2)
-        for (int code = 33; code < 128; code++) {
-            const char text[2] = {(char)code, 0};
-            int side = (int)(4 * height);
-            snow_overlay *overlay = support_overlay(f->context, side, side);
-            double width = height * snow_font_width(text);
-            assert_int_equal(
-                snow_overlay_text(overlay, height, height, 0, 0, height, text),
-                SNOW_STATUS_OK);
-            float *pixels = draw_alone(overlay, side);
-            double border = 2.7 + 0.15 * height, most = 0;
-            for (int y = 0; y < side; y++)
-                for (int x = 0; x < side; x++) {
-                    const float *pixel = pixels + 4 * (y * side + x);
-                    most = fmax(most, (double)pixel[0]);
-                    if (pixel[3] > 0)
-                        assert_true(x > height - border &&
-                                    x < height + width + border &&
-                                    y > height - 0.2 * height - border &&
-                                    y < 2 * height + 0.4 * height + border);
-                }
-            if (!(most > 0.7))
-                fail_msg("%c at %g: %g", code, height, most);
-            free(pixels);
-            snow_overlay_free(overlay);
-        }
+    for (double height = 9; height < 120; height *= 2) {
+        for (int code = 33; code < 128; code++)
+            check_in_its_box(f, (const char[2]){(char)code, 0}, height);
+        for (size_t n = 0; n < SIGNS; n++)
+            check_in_its_box(f, characters[n], height);
+    }
+}
+
+/* Signs differ from each other and from all that ASCII has, at a title's size;
+ * none is the box. */
+static void signs_are_told_apart(void **state) {
+    image_fixture *f = *state;
+    enum { SIDE = 48, BYTES = SIDE * SIDE * 4 * sizeof(float) };
+    float *pixels[SIGNS + ASCII];
+    for (size_t n = 0; n < SIGNS + ASCII; n++) {
+        const char ascii[2] = {n < SIGNS ? 0 : (char)(n - SIGNS + '!'), 0};
+        const char *text = n < SIGNS ? characters[n] : ascii;
+        snow_overlay *overlay = support_overlay(f->context, SIDE, SIDE);
+        assert_int_equal(snow_overlay_text(overlay, 9, 9, 0, 0, 24, text),
+                         SNOW_STATUS_OK);
+        pixels[n] = draw_alone(overlay, SIDE);
+        snow_overlay_free(overlay);
+        for (size_t m = 0; m < n && m < SIGNS; m++)
+            if (memcmp(pixels[m], pixels[n], BYTES) == 0)
+                fail_msg("%s is drawn as %s", characters[m], text);
+    }
+    for (size_t n = 0; n < SIGNS + ASCII; n++)
+        free(pixels[n]);
 }
 
 /* Letters differ from each other at the smallest size. */
@@ -628,6 +666,7 @@ int main(void) {
         HERE(what_is_no_patient_has_no_letters),
         HERE(every_character_is_drawn_in_its_box),
         HERE(letters_are_told_apart),
+        HERE(signs_are_told_apart),
         HERE(pieces_of_rows_are_the_row),
         HERE(letters_stand_out_on_any_background),
         HERE(letters_are_dark_on_light_backgrounds),

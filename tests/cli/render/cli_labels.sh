@@ -98,6 +98,12 @@ run 0 "a frame of the other time" "$TOOL" render s_1.vti -q -s 160x150 -y \
 run 6 "shows it" "$TOOL" compare x.png y.png
 run 2 "formats are checked" of_time -o w1.png --annotate time=%s
 says "neither one number"
+told "letters that the font lacks, anywhere" '日: has letters that the font lacks' \
+    "$TOOL" render s_1.vti -s 160x150 -y -o y.png --legend=日
+run 0 "those that it has" "$TOOL" render s_1.vti -s 160x150 -y -o y.png '--legend=σ (Ω⁻¹)' --title "ΔT"
+not_said 'lacks'
+run 2 "titles have an end" of_time -o w1.png --title "$(printf '%01001d' 0)"
+says "1001 bytes: at most 1000"
 run 2 "floats have no title" of_time -o w.npy --title Run
 says "cannot be drawn"
 

@@ -46,6 +46,7 @@ convert a b|one word too many for convert
 --perspective 0 x|--perspective: '0' is out of range
 --perspective= x -o y.png|--perspective: needs a value
 --perspective x.nii y -o y.png|one word too many
+x.nii --legend 'v (K)' -o y.png|v \(K\): .* a legend follows a =: --legend="v \(K\)"
 --persp x -o y.png|did you mean --perspective
 info --perspective x|is not an option of info
 --labels 1 phantom:marschner-lobb -o y.png|--labels: picks whole numbers, and these values are fractions
