@@ -350,8 +350,8 @@ static snow_status look_below(const stack *s, const char *path,
         *files = below;
         below = own;
         snow_notify(s->context,
-                    "has no slices itself; those of the folders below it, such "
-                    "as %s, are read",
+                    "the folder has no slices itself; those of the folders "
+                    "below it, such as %s, are read",
                     name);
     }
     snow_folder_free(&below);

@@ -274,6 +274,7 @@ for z in range(4):
         delattr(ct, name)
     ct.SOPClassUID = ct.file_meta.MediaStorageSOPClassUID = CT
     ct.Modality, ct.SeriesInstanceUID = "CT", "1.2.8"
+    ct.SeriesDescription = "Thorax 1.0 B70f"
     ct.ImagePositionPatient = [3, -4, 7 + 2.5 * z]
     ct.ImageOrientationPatient = [1, 0, 0, 0, 1, 0]
     ct.PixelSpacing = [0.75, 0.5]
@@ -283,8 +284,8 @@ for i in range(2):
         np.roll(labels, i), AXIAL, spacing, origin)))
 oracle.expect("both", grey[:4], wanted, name="a CT with its segmentations")
 oracle.says("a CT with its segmentations", "both",
-            "0: CT 9x5, 4 images (taken); 1: "
-            "SEG 9x5, 21 images; 2: SEG 9x5, 21 images")
+            'the input has 3 series of images: 0: CT 9x5, 4 images "Thorax 1.0 B70f" '
+            '(taken); 1: SEG 9x5, 21 images "Organs"; 2: SEG 9x5, 21 images "Organs"')
 oracle.expect("both/seg0.dcm", labels, wanted, name="a segmentation beside")
 
 # --- what is refused ----------------------------------------------------------

@@ -215,23 +215,27 @@ static const dicom_image *image_of(const choice *all, size_t index) {
     return all->c->frames[all->groups[index].first].image;
 }
 
-/* One line: "0 CT 512x512x20, 1 MR ...". */
+/* One line: "0: CT 512x512, 20 images "Thorax 1.0"; 1: MR ...". */
 static void list_series(const choice *all, size_t taken, char *out,
                         size_t capacity) {
     size_t used = 0;
     for (size_t i = 0; i < all->count && used < capacity; i++) {
         const dicom_image *image = image_of(all, i);
+        const bool named = *image->description;
         if (i == MOST_LISTED) {
             snprintf(out + used, capacity - used, ", and %zu more",
                      all->count - i);
             return;
         }
         used += (size_t)snprintf(
-            out + used, capacity - used, "%s%zu: %s%s%lldx%lld, %zu image%s%s",
+            out + used, capacity - used,
+            "%s%zu: %s%s%lldx%lld, %zu image%s%s%s%s%s",
             i ? "; " : "", i, image->modality, *image->modality ? " " : "",
             (long long)snow_dicom_columns(image),
             (long long)snow_dicom_rows(image), all->groups[i].count,
-            all->groups[i].count > 1 ? "s" : "", i == taken ? " (taken)" : "");
+            all->groups[i].count > 1 ? "s" : "", named ? " \"" : "",
+            image->description, named ? "\"" : "",
+            i == taken ? " (taken)" : "");
     }
 }
 
@@ -276,8 +280,8 @@ static snow_status choose_group(const choice *all, const char *series,
                          series, all->count, text);
     if (all->count > 1 && !series)
         snow_notify(all->c->context,
-                    "has %zu series of images: %s; --series selects another by "
-                    "its number or UID",
+                    "the input has %zu series of images: %s; --series selects "
+                    "another by its number or UID",
                     all->count, text);
     *out = taken;
     return SNOW_STATUS_OK;
