@@ -31,7 +31,8 @@ static const struct {
     {WRITTEN | VERB_EXPORT | VERB_CONVERT | PHANTOM | VERB_TF, "overwrite",
      "replace the file if it exists"},
     {TURNED, "size", "size in pixels (default 512x512)"},
-    {VERB_SLICE, "size", "size in pixels (default: that of the slice)"},
+    {VERB_SLICE, "size", "size in pixels, with --grid of the whole sheet (default: a pixel for "
+     "each voxel)"},
     {ANY, "preset", "look for a kind of data: ct-bone; help preset lists all"},
     {ANY, "colormap", "colours: viridis; help colormap lists all"},
     {ANY, "window", "show W data values around L: -w 400,40"},

@@ -45,7 +45,8 @@ const option_row option_table[] = {
      ".nii.gz, .mha, .npy, .raw or .raw.gz. A picture without -o is NAME.png in "
      "the working folder, after the input, and replaces no file"},
     {"size", 's', "WxH|N", TOPIC_OUTPUT, FILED, read_size, FIELD(size), 0, 0, "picture size in pixels; N is NxN (default 512x512; of a slice its own, a "
-     "pixel for each voxel or, where they are not square, for its shorter side)"},
+     "pixel for each voxel or, where they are not square, for its shorter side); of slices in one "
+     "picture that of the whole sheet"},
     {"background", 0, "COLOR|auto|none", TOPIC_OUTPUT, PICTURE, read_color,
      FIELD(background), 0, 0, "background colour of a PNG, WebP, JPEG or movie: a name, #rgb, #rrggbb, "
      "or r,g,b from 0 to 1; auto: #141414 in modes over and iso, black around "
@@ -316,8 +317,9 @@ const option_row option_table[] = {
     {"slab", 0, "THICKNESS[:max|mean|min]", TOPIC_MORE, SLICE, read_text, FIELD(thickness), 0, 0,
      "show the maximum (default), mean or minimum of the slices within half a "
      "thickness: 10mm:mean, or a number of slices"},
-    {"grid", 0, "CxR", TOPIC_MORE, SLICE, read_text, FIELD(grid), 0, 0, "draw C times R slices in one picture, with their numbers, spread evenly over those that "
-     "show something, or over --at A:B"},
+    {"grid", 0, "CxR", TOPIC_MORE, SLICE, read_text, FIELD(grid), 0, 0,
+     "draw CxR numbered slices in one picture, spread evenly over what there is to see, or over "
+     "--at A:B"},
     {"ortho", 0, NULL, TOPIC_MORE, SLICE, read_flag, FIELD(ortho), 0, 0, "draw the axial, coronal and sagittal slice through the point of --at "
      "beside one another, at one scale, with lines through it"},
     {"frames", 0, "N", TOPIC_MORE, TURNTABLE | SLICE, read_integer, FIELD(frames), 1,

@@ -29,6 +29,24 @@ class Documents(InFolder):
         for block in blocks:
             self.run_block(block, known)
 
+    def test_the_answer_about_figures_is_right(self):
+        """The figure is what is seen of the picture, and names its density."""
+        try:
+            import PIL.Image  # type: ignore[import]
+        except ImportError:
+            self.skipTest("there is no Pillow")
+        text = DOCUMENT.with_name("questions.md").read_text(encoding="utf-8")
+        block, = re.findall(r"```python\n(.*?)```", text, re.S)
+        exec(compile(block, "questions.md", "exec"), {})
+        whole, figure = (numpy.asarray(PIL.Image.open(name)) for name in ("head.png", "figure.png"))
+        seen = whole[..., -1] > 0
+        rows, columns = (numpy.flatnonzero(seen.any(axis)) for axis in (1, 0))
+        self.assertLess(max(figure.shape[:2]), len(whole))
+        numpy.testing.assert_array_equal(figure, whole[rows[0]:rows[-1] + 1,
+                                                       columns[0]:columns[-1] + 1])
+        for density in PIL.Image.open("figure.png").info["dpi"]:
+            self.assertAlmostEqual(density, 300, delta=0.1)
+
     def run_block(self, block, known):
         needs = re.match(r"# needs (\w+).*\n", block)
         if needs and needs.group(1) == "files":
