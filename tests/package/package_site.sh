@@ -18,6 +18,8 @@ prints '^site: [0-9]{2} pages, [0-9]{4} links, 0 faults$'
 page() { cat "site/$1"; }
 check "it begins with the README" grep -q '<h1 id="snowglass">' site/index.html
 check "pictures are copied" cmp docs/gallery/engine.png site/docs/gallery/engine.png
+check "each picture of the gallery has the source of its data" [ \
+    "$(grep -c '^Data: .' docs/gallery/README.md)" = "$(grep -c '^## ' docs/gallery/README.md)" ]
 check "the search alone has scripts" [ \
     "$(grep -rliE --include='*.html' '<script|javascript:' site)" = site/search.html ]
 check "it knows each page" [ -z "$(cd site && find . -name '*.html' ! -name search.html |
