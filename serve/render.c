@@ -261,12 +261,16 @@ static bool switch_volume(renderer *r, const json_t *question) {
     return good;
 }
 
+/* A page that has come back asks for the volume that it showed, unless another
+ * page was "first": all have heard what that opened. */
 static bool opens(renderer *r, const viewer_question *question) {
     const char *what =
         json_string_value(json_object_get(question->tree, "what"));
+    const json_t *first = json_object_get(question->tree, "first");
     if (strcmp(what, "open") != 0 || !r->opener.choose)
         return false;
-    const bool good = switch_volume(r, question->tree);
+    const bool late = json_is_true(first) && !r->drawing->waits;
+    const bool good = late || switch_volume(r, question->tree);
     answer_put(r->box, question->client, MESSAGE_PLAIN,
                json_pack("{s:s, s:b}", "t", "opened", "good", (int)good));
     return true;

@@ -63,11 +63,16 @@ export class Folder {
         this.opening = null; // the entry that was asked for
         /** @type {number|null} */
         this.then = null; // and the one after it
-        /** What a link names: [name, series].
+        /** What a link names, or was open before the viewer was started again: [name, series].
          * @type {string[]|null} */
         this.wanted = null;
         /** Whether that is not what was opened. */
         this.lacks = false;
+        /** What was open when the connection was lost.
+         * @type {string[]|null} */
+        this.left = null;
+        this.sought = false; // on this connection
+        this.chosen = false; // on this connection, by the user
         this.timer = 0;
         this.head = make('h2', {textContent: 'Open', tabIndex: -1, autofocus: true, id: 'folder'});
         this.line = make('p', {className: 'faint grow', role: 'status'});
@@ -108,6 +113,9 @@ export class Folder {
 
     /** The connection, or the server, is another. */
     forget() {
+        this.left = this.current ?? this.left;
+        this.sought = this.chosen = false;
+        this.report('');
         this.entries = [];
         this.order = [];
         this.tiles.clear();
@@ -123,6 +131,9 @@ export class Folder {
         this.listed = listed;
         this.buttons.hidden = false;
         this.head.textContent = `Open - ${listed.name}`;
+        if (this.waits && this.left && !this.sought)
+            this.wanted = this.left;
+        this.sought = true;
         this.fetch();
         this.later();
         this.seek();
@@ -172,9 +183,9 @@ export class Folder {
         if (wish >= 0 && wish === listed.open) {
             this.found();
         } else if (wish >= 0) {
-            this.choose(wish);
+            this.start(wish, wanted === this.left);
         } else {
-            const text = `The list has no ${wanted[0]}, which the link names: choose another.`;
+            const text = `The list has no ${wanted[0]}, which ${wanted === this.left ? 'was open' : 'the link names'}: choose another.`;
             this.lacks = true;
             this.report(text);
             this.store.say(text, false, 20000);
@@ -195,7 +206,7 @@ export class Folder {
         if (good)
             this.report('');
         if (next !== null)
-            this.choose(next);
+            this.start(next);
         else if (good)
             this.element.close();
         this.arrange();
@@ -338,6 +349,13 @@ export class Folder {
     choose(n) {
         this.lacks ||= this.wanted !== null;
         this.wanted = null;
+        this.chosen = true;
+        this.start(n);
+    }
+
+    /** `first`: unless something is open by then.
+     * @param {number} n */
+    start(n, first = false) {
         if (this.opening !== null) {
             this.then = n;
             return;
@@ -346,7 +364,7 @@ export class Folder {
         const text = `Opening ${words(this.entries[n])[0]} ...`;
         this.report(text);
         this.store.say(text, true);
-        this.store.engine.ask('open', {entry: n});
+        this.store.engine.ask('open', {entry: n, first});
     }
 
     /** The next, or the one before, of what is open or asked for.
@@ -357,6 +375,11 @@ export class Folder {
             return;
         const at = all.indexOf(from);
         this.choose(all[at < 0 ? 0 : (at + by + all.length) % all.length]);
+    }
+
+    /** Whether nothing is open yet. */
+    get waits() {
+        return this.listed?.open === null;
     }
 
     /** What a link names of what is open, a volume or a recipe.

@@ -55,7 +55,7 @@ export type Info = {
     presets: [name: string, text: string][], colormaps: string[], tf: boolean, fov: number,
     channels?: string[], keys?: string[], mask?: boolean, overlay?: string | null, labels?: string | null,
     slices?: SliceInfo[] | null, live?: boolean, instance?: string, file?: string, window: Pair,
-    hounsfield?: boolean, value_unit?: string, opened?: number, modality?: string,
+    hounsfield?: boolean, value_unit?: string, opened?: number, series?: string, modality?: string,
     movies?: {formats: string[], note: string} | null};
 
 export type Label = [value: number, name: string, color: string, opacity: number];

@@ -175,10 +175,7 @@ const actions = {
     movie: () => engine.ask('movie-command', movies.order),
     link() {
         const url = new URL(location.href);
-        const {size, ...keys} = store.keys; // all of them: elsewhere no look was before
-        const volume = folder.current, text = {token: engine.token, recipe: JSON.stringify(keys)};
-        const words = volume ? {...text, volume: JSON.stringify(volume)} : text;
-        url.hash = `${new URLSearchParams(words)}`;
+        url.hash = linkTo(store.keys, folder.current); // all of them: elsewhere no look was before
         copy('Link to this state', url.href);
     },
     file: () => engine.ask('recipe'),
@@ -267,6 +264,14 @@ function describe() {
     redo.disabled = !store.after.length;
 }
 
+/** What stands behind the # of a link.
+ * @param {Keys} state
+ * @param {string[]|null} volume of a folder */
+function linkTo({size, ...keys}, volume) {
+    const text = {token: engine.token, recipe: JSON.stringify(keys)};
+    return `${new URLSearchParams(volume ? {...text, volume: JSON.stringify(volume)} : text)}`;
+}
+
 // --- recipes of files -----------------------------------------------------------------
 
 /** @param {unknown} path */
@@ -331,9 +336,9 @@ function ready() {
     describe();
 }
 
-/** What this page showed when its viewer went away.
- * @type {{keys: Keys, unheard: import('./types').Changes}} */
-let lost = {keys: {}, unheard: {}};
+/** What this page showed when its viewer went away; of a folder which volume.
+ * @type {{keys: Keys, unheard: import('./types').Changes, volume: string[]|null}} */
+let lost = {keys: {}, unheard: {}, volume: null};
 /** Whether it is another viewer, or file.
  * @type {{other: boolean, same: boolean}|null} */
 let returns = null;
@@ -341,17 +346,25 @@ let returns = null;
 /** Another viewer has none of the state: it gets that of this page if nobody has changed
  * its own and the file is the same, else when the user says so.  The same one gets what
  * it has not heard.
- * @param {boolean|undefined} touched */
-function returned(touched) {
-    const {other, same} = returns ?? {}, info = known(store.info);
+ * @param {boolean|undefined} touched
+ * @param {boolean} renewed */
+function returned(touched, renewed) {
+    const {other, same} = returns ?? {}, info = known(store.info), {keys, volume} = lost;
     if (!other) {
-        if (Object.keys(lost.unheard).length)
+        if (!renewed && Object.keys(lost.unheard).length)
             store.apply(lost.unheard);
         return;
     }
-    const {good} = sifted(lost.keys, info);
+    const {good} = sifted(keys, info);
     if (same && !touched)
         store.replace(good);
+    else if (!same && folder.chosen)
+        return;
+    else if (!same && volume && `${volume}` !== `${folder.current}`)
+        question('The viewer was started again', `It shows ${info.name}, which another page has opened. This page had ${volume[0]}.`,
+            `Open ${volume[0]} as it was`, () => {
+                location.hash = linkTo(keys, volume);
+            });
     else if (JSON.stringify(good) !== JSON.stringify(sifted(store.keys, info).good))
         question('The viewer was started again', `It shows ${info.name}: ${same ? 'another page has changed it'
             : 'this is another file'}. This page had a state of its own.`,
@@ -380,7 +393,8 @@ let begin = {};
 engine.on('closed', reason => say(plain(reason), true));
 engine.on('open', () => {
     const {size, ...own} = store.own;
-    lost = {keys: own, unheard: engine.lost};
+    if (!store.info || !folder.waits) // else it is not what is shown yet
+        lost = {keys: own, unheard: engine.lost, volume: folder.left};
     returns = null;
     fresh = true;
     say('');
@@ -429,14 +443,18 @@ engine.on('replaced', ({gone, again}) => {
 });
 engine.on('info', info => {
     const before = store.info, part = before !== null && before.file === info.file; // of the same volume
+    const other = before !== null && before.instance !== info.instance;
+    const same = part && before.name === info.name && before.series === info.series;
     if (before)
-        returns ??= {other: before.instance !== info.instance, same: part && before.name === info.name};
-    if (info.opened && (!before || info.opened !== before.opened || info.instance !== before.instance)) {
+        returns ??= {other, same};
+    fresh ||= other; // of a folder nothing was open until now
+    if (info.opened && !(other && same) && (!before || other || info.opened !== before.opened)) {
         renewed = true;
         store.renew();
         slices.forget();
-        say('');
     }
+    if (renewed || other)
+        say('');
     store.info = info;
     document.title = `${info.name} - snowglass`;
     title.textContent = `${info.name}  ${info.dims.join(' x ')}${info.live ? '' : ` ${info.type}`}, ` +
@@ -470,11 +488,11 @@ engine.on('state', ({touched}) => {
         return;
     if (first || renewed)
         begin = store.own;
-    const again = fresh && !first && !renewed;
+    const again = fresh && !first && !folder.waits, other = renewed;
     first = fresh = renewed = false;
     fitWindow(true);
     if (again)
-        returned(touched);
+        returned(touched, other);
     if (begins)
         folder.want(given.get('volume'));
     if (!folder.wanted)

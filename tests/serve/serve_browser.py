@@ -197,6 +197,9 @@ def chosen():
     with open(f"{place}/warm.json", "w") as out:
         json.dump({"input": "v2.nrrd", "azimuth": 33, "mask": "v2.nrrd", "labels": "60-255"}, out)
     plan("folder", place)
+    again = os.path.join(shots, "volumes_again")
+    shutil.copytree(place, again, dirs_exist_ok=True)
+    plans.append(("reopened", None, [TOOL, again], ()))
 
 
 def moving():

@@ -217,6 +217,9 @@ def opens_what_was_chosen(server, page, entries):
           page.state.get("azimuth") == 33 and page.state.get("preset") == "linear", page.state)
     shown, command = page.rest(9, size=[64, 48]), page.ask("command")["text"]
     check("and has a command", run_command(command, out=AGAIN) == shown, command)
+    late = opened(page, entry=index_of(entries, "a.nrrd"), first=True)
+    check("a page that comes back too late opens nothing", late is None and not page.why and
+          page.ask("command")["text"] == command, page.why)
 
 
 def is_open_still(page):

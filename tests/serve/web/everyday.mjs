@@ -287,14 +287,14 @@ async function planes({check, keys, rest, wheel}, page, its) {
 const PHANTOM = ['phantom:head', '--dims', '64x64x64'];
 
 /** A viewer of its own: [process, URL]. */
-async function start(tool, ...options) {
+export async function start(tool, ...options) {
     const server = spawn(tool, ['serve', ...options],
         {stdio: ['ignore', 'pipe', 'ignore']});
     const [line] = await once(createInterface(server.stdout), 'line');
     return [server, line];
 }
 
-async function end(server) {
+export async function end(server) {
     server.kill();
     await once(server, 'exit');
 }

@@ -1,5 +1,8 @@
 // tests/serve/web/folder.mjs - the list of a folder in the page: four volumes "v1.nrrd",
 // "v2.nrrd", "v10.nrrd" and "deep/<b>v3.nrrd", a recipe of v2 and a file that is cut.
+import {copyFileSync, rmSync} from 'node:fs';
+import {end, start} from './everyday.mjs';
+
 const names = page => page.locator('[aria-label="Volumes"] b').allTextContents();
 const shown = (page, name) => page.waitForFunction(text => document.title.startsWith(text) && window.snowglass.page.rest, name,
     {polling: 20});
@@ -107,4 +110,86 @@ async function linked({check, keys, rest}, page, other, link) {
     await shown(page, 'v1.nrrd');
     await rest(other);
     check('and nothing else gets its state', !(await keys(page)).title, (await keys(page)).title);
+}
+
+/** A viewer of a folder that is started again: a page has what it had open, as it was. */
+export async function reopened({check, keys, open, part, rest, slicesRest, folder}) {
+    const {url: tool, said, words: [place]} = part();
+    const token = ['--token-file', `${folder}/reopened_${process.pid}`];
+    let [server, url] = await start(tool, place, ...token);
+    const {port} = new URL(url), page = await open({}, url, false), dialog = page.locator('dialog[open]');
+    const choose = (where, name) => where.getByRole('button', {name}).click();
+    const told = words => page.waitForFunction(text => document.querySelector('.said').textContent.includes(text), words,
+        {polling: 20});
+    const set = (where, changes) => where.evaluate(all => window.snowglass.recipe.set(all), changes);
+    /** Another viewer, which the page finds when it is told. */
+    const renew = async () => {
+        await page.evaluate(() => { window.snowglass.engine.wait = 1e8; });
+        await end(server);
+        await told('start snowglass serve again');
+        await page.evaluate(() => { window.snowglass.page.rest = null; });
+        [server] = await start(tool, place, ...token, '--listen', `:${port}`);
+    };
+    const comeBack = () => page.evaluate(() => window.snowglass.engine.open());
+    const asIt = async () => {
+        await page.waitForFunction(() => window.snowglass.recipe.keys.title === 'mine' && window.snowglass.page.rest, null, {polling: 20});
+        const {azimuth, colormap, measure, slices} = await keys(page);
+        return JSON.stringify([azimuth, colormap, measure, slices?.layout]);
+    };
+    await choose(page, /^v2.nrrd/);
+    await shown(page, 'v2.nrrd');
+    await set(page, {azimuth: 42, colormap: 'hot', title: 'mine', measure: 'line 2,2,2 12,9,8'});
+    await page.getByRole('button', {name: /^2 x 2/}).click();
+    await rest(page);
+    await slicesRest(page);
+    const undo = await page.evaluate(() => window.snowglass.store.before.length);
+
+    await renew();
+    await set(page, {elevation: 7}); // nobody hears it
+    await comeBack();
+    const was = await asIt();
+    check('the volume is open again, as it was', was === '[42,"hot","line 2,2,2 12,9,8","grid"]' &&
+        (await keys(page)).elevation === 7 && (await page.title()).startsWith('v2.nrrd'), was);
+    await slicesRest(page);
+    check('with its slices, and nothing in the way', await page.evaluate(() => window.snowglass.slices.panes.every(pane => pane.bitmap)) &&
+        !await dialog.count() && await page.locator('.said').textContent() === '', await page.locator('.said').textContent());
+    check('and with its steps', await page.evaluate(() => window.snowglass.store.before.length) > undo);
+    const other = await open({}, url);
+    check('which other pages see', (await keys(other)).title === 'mine' && (await keys(other)).elevation === 7);
+    await other.close();
+
+    await renew();
+    const third = await open({}, url, false);
+    await choose(third, /^v1.nrrd/);
+    await shown(third, 'v1.nrrd');
+    await comeBack();
+    const text = await dialog.textContent();
+    check('what another page has opened meanwhile stays', /v1.nrrd, which another page/.test(text) && !(await keys(third)).title, text);
+    await choose(dialog, /^Open v2.nrrd as it was/);
+    await page.waitForFunction(() => window.snowglass?.page.info?.name === 'v2.nrrd');
+    check('until it is said', await asIt() === was, await asIt());
+    await third.context().close();
+
+    copyFileSync(`${place}/v10.nrrd`, `${place}/v2.nrrd`); // of another time
+    await renew();
+    await comeBack();
+    await page.waitForFunction(() => document.querySelector('dialog[open]:not(.folder)'), null, {polling: 20});
+    check('another file under its name is not taken for it', /this is another file/.test(await dialog.textContent()) &&
+        !(await keys(page)).title, await dialog.textContent());
+    await choose(dialog, /^Take the state/);
+    check('but gets its state, if that is said', await asIt() === was, await asIt());
+
+    rmSync(`${place}/v2.nrrd`);
+    await renew();
+    await comeBack();
+    await page.waitForFunction(() => /no v2.nrrd, which was open/.test(document.querySelector('.folder [role=status]').textContent), null,
+        {polling: 20});
+    check('one that is gone is named', true);
+    await choose(page, /^v1.nrrd/);
+    await shown(page, 'v1.nrrd');
+    await rest(page);
+    check('and another one has a state of its own', !(await keys(page)).title && !await dialog.count(), (await keys(page)).title);
+    await page.context().close();
+    await end(server);
+    said.splice(0, said.length, ...said.filter(line => !/WebSocket connection to/.test(line)));
 }

@@ -11,7 +11,7 @@ import {createServer, request} from 'node:http';
 import {connect} from 'node:net';
 import {readFileSync, writeFileSync} from 'node:fs';
 import {asked, restarted, steps} from './everyday.mjs';
-import {listed} from './folder.mjs';
+import {listed, reopened} from './folder.mjs';
 import {layouts} from './layouts.mjs';
 import {measures} from './measures.mjs';
 import {movies} from './movies.mjs';
@@ -1460,7 +1460,7 @@ async function more() {
 
 const tools = {accessible: page => judged(page, 'with the axis near'), answered, check, copied, file, folder, judged, keepBytes, keys, open, shot, part, rest, slicesRest, wheel};
 const known = {short: first, long: all, more, film, steps: () => steps(tools),
-    restarted: () => restarted(tools), asked: () => asked(tools), measures: () => measures(tools), layouts: () => layouts(tools), transfer: () => transfer(tools), folder: () => listed(tools), movies: () => movies(tools), embed: embedded, points: manyPoints, mask: masked,
+    restarted: () => restarted(tools), asked: () => asked(tools), measures: () => measures(tools), layouts: () => layouts(tools), transfer: () => transfer(tools), folder: () => listed(tools), reopened: () => reopened(tools), movies: () => movies(tools), embed: embedded, points: manyPoints, mask: masked,
     overlay: overlaid, labels: labelled, recipes, fused, channels: mixed, plain: plainChannels, begun, many};
 
 async function run() {
