@@ -377,7 +377,7 @@ const pointer = new Pointer(canvas, store, (x, y) => engine.ask('depth', {x, y, 
 /** @type {Measure} */
 const measure = new Measure(store, pointer, slices, views, () => actions.measure(measure.tool));
 const times = new Times(store, () => panel.update());
-const movies = new Movies(store, times, save);
+const movies = new Movies(store, times, save, question);
 /** @type {Panel} */
 const panel = new Panel(store, actions, slices, measure, times, movies);
 const overlay = new Overlay(store, pointer, slices);
@@ -547,6 +547,10 @@ new ResizeObserver(() => {
 }).observe(picture);
 engine.open();
 document.addEventListener('pointerdown', () => store.part(), true);
+window.addEventListener('beforeunload', event => {
+    if (movies.comes) // without any page it would not be written
+        event.preventDefault();
+});
 document.addEventListener('dragover', event => event.preventDefault());
 document.addEventListener('drop', event => {
     event.preventDefault();

@@ -130,8 +130,8 @@ void answer_info(drawing *d, outbox *box) {
     json_object_set_new(tree, "instance", json_string(identity_of_program()));
     json_object_set_new(tree, "file", json_string(d->identity));
     json_object_set_new(tree, "opened", json_integer(d->opened));
-    json_object_set_new(
-        tree, "series", json_string(d->first.series ? d->first.series : ""));
+    json_object_set_new(tree, "series",
+                        json_string(d->first.series ? d->first.series : ""));
     json_object_set_new(tree, "value_unit", json_string(info->value_unit));
     json_object_set_new(tree, "modality", json_string(info->modality));
     json_object_set_new(tree, "window",

@@ -286,23 +286,25 @@ void job_free(movie_job *j) {
     free(j);
 }
 
-/* Under the lock. */
+/* Under the lock.  The movie before goes when there is room for another. */
 static const char *prepare(movie_job *j, const char *name) {
     static char fault[PATH_MAX];
-    folder_remove(&j->folder);
-    int number = folder_make(&j->folder);
+    private_folder made;
+    int number = folder_make(&made);
     if (number == 0 && !j->threaded) {
         number = pthread_create(&j->thread, NULL, work, j);
         j->threaded = number == 0;
     }
     if (number != 0) {
-        folder_remove(&j->folder);
+        folder_remove(&made);
         snprintf(fault, sizeof fault,
                  "movie: cannot be begun in %s: %s; make space there, or start "
                  "the viewer with another TMPDIR",
                  folder_parent(), strerror(number));
         return fault;
     }
+    folder_remove(&j->folder);
+    j->folder = made;
     snprintf(j->path, sizeof j->path, "%s/%s", j->folder.path, name);
     return NULL;
 }
@@ -310,10 +312,13 @@ static const char *prepare(movie_job *j, const char *name) {
 const char *job_begin(movie_job *j, char *command, const char *name,
                       const movie_order *order) {
     pthread_mutex_lock(&j->lock);
-    const char *fault = j->state == JOB_WRITING
-                            ? "movie: one is being written; wait for it, or "
-                              "cancel it"
-                            : prepare(j, name);
+    const char *fault =
+        j->state == JOB_WRITING
+            ? "movie: one is being written; wait for it, or cancel it"
+        : j->state == JOB_DONE && !order->overwrite
+            ? "movie: one is written already; fetch it, then discard it or "
+              "order with overwrite"
+            : prepare(j, name);
     if (fault) {
         free(command);
     } else {

@@ -1,5 +1,6 @@
 /* job.h - a movie that the viewer writes: one at a time, by the tool's own
- * command, in a private folder, until pages have fetched it.
+ * command, in a private folder, until pages have fetched it.  Another one takes
+ * its place only where that is ordered.
  *
  *   none -> writing -> done | failed | cancelled -> writing ...
  *

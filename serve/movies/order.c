@@ -22,9 +22,9 @@ refuse(movie_order *out, const char *format, ...) {
 }
 
 static bool is_key(const char *key) {
-    static const char *const all[] = {"t",     "what",  "kind", "frames",
-                                      "first", "last",  "fps",  "size",
-                                      "tag",   "format"};
+    static const char *const all[] = {"t",     "what",   "kind",     "frames",
+                                      "first", "last",   "fps",      "size",
+                                      "tag",   "format", "overwrite"};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (strcmp(all[i], key) == 0)
             return true;
@@ -125,6 +125,13 @@ static bool read_tag(const json_t *tree, movie_order *out) {
     return true;
 }
 
+static bool read_overwrite(const json_t *tree, movie_order *out) {
+    const json_t *overwrite = json_object_get(tree, "overwrite");
+    out->overwrite = json_is_true(overwrite);
+    return !overwrite || json_is_boolean(overwrite) ||
+           refuse(out, "movie: overwrite must be true or false");
+}
+
 bool order_read(const json_t *tree, int64_t times, movie_order *out) {
     const char *key;
     json_t *value;
@@ -135,5 +142,6 @@ bool order_read(const json_t *tree, int64_t times, movie_order *out) {
     }
     return read_verb(tree, out) && read_format(tree, out) &&
            (out->steps ? read_steps(tree, times, out) : read_turn(tree, out)) &&
-           read_rate(tree, out) && read_size(tree, out) && read_tag(tree, out);
+           read_rate(tree, out) && read_size(tree, out) &&
+           read_tag(tree, out) && read_overwrite(tree, out);
 }

@@ -2,11 +2,13 @@
  * steps.
  *
  *   {"t": "ask", "what": "movie", "kind": "turntable", "frames": 120,
- *    "fps": 25, "size": [1280, 720], "format": "mp4", "tag": "k3f9"}
+ *    "fps": 25, "size": [1280, 720], "format": "mp4", "tag": "k3f9",
+ *    "overwrite": true}
  *   {"t": "ask", "what": "movie", "kind": "movie", "first": 0, "last": 9}
  *
  * `kind` is the verb of the tool.  What is left out is as the tool has it, and
- * the size that of the page.  Nothing here touches a socket or a file. */
+ * the size that of the page; so nothing takes the place of a movie that is
+ * there without "overwrite".  Nothing here touches a socket or a file. */
 #ifndef MOVIES_ORDER_H
 #define MOVIES_ORDER_H
 
@@ -27,6 +29,7 @@ typedef struct movie_order {
     int64_t first, last; /* steps; last -1: none given */
     double fps;          /* 0: not given */
     int64_t width, height;
+    bool overwrite;
     const char *format;        /* "mp4" */
     char tag[ORDER_TAG_BYTES]; /* by which the page knows its own */
     char fault[160];

@@ -39,7 +39,7 @@ def gone(viewer, seconds=PATIENCE):
 
 
 def order(page, **asked):
-    page.question("movie", **{"size": [64, 48], "format": "webp", "frames": 5, **asked})
+    page.question("movie", **{"size": [64, 48], "format": "webp", "frames": 5, "overwrite": True, **asked})
 
 
 def until(page, *states, seen=None):
@@ -110,6 +110,9 @@ def is_of_the_command():
         check(f"with the bytes of its command ({kind})", data == again, (len(data), len(again)))
         if has_ffmpeg and kind == "mp4":
             check("and as many frames", len(frames_of(data)) == 5, frames_of(data))
+    order(page, overwrite=False)
+    text = told(page)
+    check("nothing takes its place without a word", "one is written already" in text and fetch(viewer)[2] == data, text)
     late = Page(viewer)
     check("a page that comes later knows of it", until(late, "done")["state"] == "done")
     late.question("movie-cancel")
@@ -218,10 +221,15 @@ def is_too_large():
     check("a full disk is said", failed["state"] == "failed" and "too large" in failed["text"] and
           "make space" in failed["text"] and viewer.place not in failed["text"], failed)
     check("and nothing is left", gone(viewer), left(viewer))
-    os.rmdir(viewer.place)
+    order(page, frames=1)
+    done = until(page, "done", "failed")
+    check("a small one has room", done["state"] == "done", done)
+    os.rename(viewer.place, viewer.place + "_")
     order(page)
     text = told(page)
     check("a folder that is not there is said", "TMPDIR" in text and viewer.place in text, text)
+    os.rename(viewer.place + "_", viewer.place)
+    check("and keeps the movie before", len(fetch(viewer)[2]) == done["bytes"])
     page.close()
     viewer.stop()
 
@@ -247,7 +255,7 @@ WRONG = [
     ({"size": [4096, 4096], "frames": 3600}, "too many"), ({"format": "../x"}, "format"),
     ({"format": 7}, "format"), ({"kind": "render"}, "kind"), ({"kind": None}, "kind"),
     ({"kind": "movie", "frames": None}, "one time step"), ({"first": 0}, "first"),
-    ({"tag": "x" * 40}, "tag"), ({"tag": 4}, "tag"), ({"output": "/tmp/x.mp4"}, "output"),
+    ({"overwrite": 1}, "overwrite"), ({"tag": "x" * 40}, "tag"), ({"tag": 4}, "tag"), ({"output": "/tmp/x.mp4"}, "output"),
     ({"resume": True}, "resume"), ({"'; touch x; '": 1}, "not known")]
 
 

@@ -16,18 +16,22 @@ const LOST = 'The viewer was started again: the movie that it was writing is los
 const sized = bytes => bytes < 1e6 ? `${Math.ceil(bytes / 1e3)} kB` : `${(bytes / 1e6).toFixed(1)} MB`;
 
 export class Movies {
-    /** `times` has the steps that are played, `save` keeps a file.
+    /** `times` has the steps that are played, `save` keeps a file, `question` asks the user.
      * @param {import('../store.js').Store} store
      * @param {import('./time.js').Times} times
-     * @param {(name: string, blob: Blob) => void} save */
-    constructor(store, times, save) {
+     * @param {(name: string, blob: Blob) => void} save
+     * @param {(name: string, text: string, answer: string, act: () => void) => void} question */
+    constructor(store, times, save, question) {
         const {engine} = store;
         this.store = store;
         this.times = times;
         this.save = save;
+        this.question = question;
         /** @type {Movie|null} */
         this.movie = null; // what the server says
         this.tag = ''; // of this page's own
+        this.saved = ''; // the one that this page has fetched
+        this.fetching = false;
         this.known = false; // the page has seen what went before
         this.writing = false; // when the connection was lost
         this.instance = '';
@@ -63,9 +67,24 @@ export class Movies {
         return {kind, ...way, ...size && {size: size.split(',').map(Number)}, ...format && {format}};
     }
 
+    /** As the tool, never in the place of one that is there without a word. */
     write() {
-        this.tag = Math.random().toString(36).slice(2, 12);
-        this.store.engine.ask('movie', {...this.order, tag: this.tag});
+        const {movie} = this, done = movie?.state === 'done';
+        const act = () => {
+            this.tag = Math.random().toString(36).slice(2, 12);
+            this.store.engine.ask('movie', {...this.order, tag: this.tag, ...done && {overwrite: true}});
+        };
+        if (done && this.saved !== JSON.stringify(movie))
+            this.question('Write another movie', `${movie.name} is there, and this page has not fetched it. ` +
+                'Another one takes its place.', 'Write the new one', act);
+        else
+            act();
+    }
+
+    /** Whether a movie that this page has ordered is still to come. */
+    get comes() {
+        const {movie, tag, fetching} = this;
+        return fetching || (movie?.state === 'writing' && Boolean(tag) && movie.tag === tag);
     }
 
     cancel() {
@@ -86,20 +105,23 @@ export class Movies {
             this.store.say(`The movie ${name} is written${text && `; ${text}`}.`);
         if (state === 'done' && own) {
             this.tag = '';
-            this.fetch(name);
+            this.fetch(movie);
         }
     }
 
-    /** @param {string} name */
-    async fetch(name) {
+    /** @param {Movie} movie */
+    async fetch(movie) {
+        this.fetching = true;
         try {
             const answer = await this.store.engine.fetch('movie');
             if (!answer.ok)
                 throw new Error(await answer.text());
-            this.save(name, await answer.blob());
+            this.save(movie.name, await answer.blob());
+            this.saved = JSON.stringify(movie);
         } catch (error) {
             this.store.say(`The movie cannot be fetched: ${error instanceof Error ? error.message : error}`);
         }
+        this.fetching = false;
     }
 
     /** `command` shows the command of the same movie.
@@ -147,7 +169,7 @@ export class Movies {
         const bar = make('progress', {'aria-label': 'How far the movie is'}), told = make('p', {className: 'faint', role: 'status'});
         const write = button('Write', 'Write the movie where the viewer runs, and fetch it', () => this.write());
         const cancel = button('Cancel', 'Cancel the movie', () => this.cancel());
-        const get = button('Download', 'Fetch the movie', () => this.movie && this.fetch(this.movie.name));
+        const get = button('Download', 'Fetch the movie', () => this.movie && this.fetch(this.movie));
         const drop = button('Discard', 'Take the movie away from where the viewer runs', () => this.cancel());
         kind.hidden = times < 2;
         this.show = () => {

@@ -75,7 +75,34 @@ async function played({check, rest}, page) {
     check('once ends at the last step', await now(page) === 3, await now(page));
 }
 
-async function written({check, copied, file, rest}, page) {
+/** Whether the browser asks before it leaves the page. */
+const stays = page => page.evaluate(() => !dispatchEvent(new Event('beforeunload', {cancelable: true})));
+
+/** Another page has not fetched it: it is asked before its own takes the place. */
+async function asked({check, open}, page) {
+    const other = await open(), movie = section(other, 'Movie'), dialog = other.locator('dialog[open]');
+    const writing = page.evaluate(() => new Promise(done => window.snowglass.engine.on('movie', ({state}) =>
+        state === 'writing' && done(true))));
+    await movie.locator('summary').click();
+    await movie.getByLabel('Format', {exact: true}).selectOption('webp');
+    await movie.getByRole('button', {name: /^Write/}).click();
+    const text = await dialog.textContent();
+    check('the next one asks', /dated.webp is there, and this page has not fetched it/.test(text), text);
+    await dialog.getByRole('button', {name: /^Close/}).click();
+    check('and does nothing else', await movie.getByRole('button', {name: /^Download|^Fetch/}).isVisible() && !await stays(other));
+    await movie.getByRole('button', {name: /^Write/}).click();
+    await dialog.getByRole('button', {name: 'Write the new one'}).click();
+    check('until it is told', await writing);
+    check('who closes the page meanwhile is asked', await stays(other) && !await stays(page));
+    await movie.getByRole('button', {name: /^Cancel/}).click();
+    await other.waitForFunction(() => window.snowglass.movies.movie.state === 'cancelled', null, {polling: 20});
+    check('but not for nothing', !await stays(other));
+    await page.evaluate(() => { document.querySelector('.said').textContent = ''; });
+    await other.context().close();
+}
+
+async function written(tools, page) {
+    const {check, copied, file, rest} = tools;
     const movie = section(page, 'Movie'), list = name => movie.getByLabel(name, {exact: true});
     await movie.locator('summary').click();
     await list('Shows').selectOption('movie');
@@ -90,6 +117,7 @@ async function written({check, copied, file, rest}, page) {
     const command = await copied(page);
     check('of the steps that are played', command.includes('snowglass movie ') && command.includes('--time 1:4'), command);
     writeFileSync(file('movie.txt'), command);
+    await asked(tools, page);
     await list('Shows').selectOption('turntable');
     const frames = movie.getByLabel('number of frames');
     for (const [typed, count] of [['50', 50], ['', 120], ['12.5', 13], ['0', 1], ['3600', 3600]]) {
