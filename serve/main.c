@@ -1,8 +1,8 @@
 /* main.c - the program snowglass-serve, which `snowglass serve` starts: shows a
  * volume in browsers that need no WebGL.
  *
- * Three threads: this one draws (render.c), one serves sockets (net/listen.c),
- * one packs pictures (pack.c).  Between them are the newest state (state.c) and
+ * Four threads: this one draws (render.c), one serves sockets (net/listen.c),
+ * two pack pictures (pack.c).  Between them are the newest state (state.c) and
  * what waits for the pages (outbox.c).  The program is one of its own since
  * libwebsockets brings many libraries with it.  Of many ranks
  * (snowglass-serve-mpi) the first has these threads, and the others draw with
@@ -311,7 +311,7 @@ static int serve(viewer *v) {
         return done;
     const renderer_opener opener = {folder_choose, folder_opened, v->folder};
     errno = 0;
-    v->pack = packer_new(v->box);
+    v->pack = packer_new(v->box, v->state);
     if (v->pack)
         v->renderer = renderer_new(&v->drawing, v->state, v->box, v->pack,
                                    v->folder ? &opener : NULL,

@@ -26,15 +26,28 @@
 #define QUALITY_THIN 50
 #define QUALITY_WEBP 60
 
-struct packer {
+/* One packs pictures that move, and one those at rest, which take longer: a
+ * draft does not wait for the one before it. */
+typedef struct lane {
+    packer *of;
     pthread_t thread;
+    bool runs;
+    picture *waiting, *packing; /* or NULL */
+} lane;
+
+enum { MOVING, AT_REST, LANES };
+
+struct packer {
     pthread_mutex_t lock;
     pthread_cond_t changed;
-    picture *waiting, *done;
-    bool ending, packing, drafting; /* the latter: a draft is packed */
-    double pixel_seconds;           /* of the last one */
+    lane lanes[LANES];
+    picture *done;
+    bool ending;
+    uint32_t newest;      /* revision that was put */
+    double pixel_seconds; /* of the last one */
     outbox *box;
-    snow_context *context; /* the thread's own */
+    const viewer_state *state;
+    snow_context *context; /* of the thread for pictures at rest */
 };
 
 /* Standard output, of which a process has one, as a file in memory: two threads
@@ -189,6 +202,14 @@ static outgoing *write_png(const snow_image *image,
     return packed;
 }
 
+/* Nobody waits for it any more. */
+static bool is_stale(void *user, snow_stage stage, double fraction) {
+    const packer *p = user;
+    (void)stage;
+    (void)fraction;
+    return state_is_stale(p->state, p->lanes[AT_REST].packing->revision);
+}
+
 static outgoing *pack_png(packer *p, const picture *made, frame_head *head) {
     double begin = seconds();
     snow_image *image = copy_image(p->context, made->image);
@@ -221,7 +242,14 @@ static void put(packer *p, const picture *made, outgoing *packed,
         if (made->level == 2)
             packed->shape = frame_shape(packed->bytes);
     }
-    outbox_put(p->box, packed);
+    pthread_mutex_lock(&p->lock);
+    if (made->revision >= p->newest) {
+        p->newest = made->revision;
+        outbox_put(p->box, packed);
+    } else if (packed) { /* the pages have a newer one */
+        outgoing_release(p->box, packed);
+    }
+    pthread_mutex_unlock(&p->lock);
 }
 
 /* Once for all pages on fast links, and once for those on thin ones; the
@@ -251,37 +279,51 @@ static double pixels_of(const snow_image *image) {
 }
 
 static void *run(void *user) {
-    packer *p = user;
+    lane *own = user;
+    packer *p = own->of;
     pthread_mutex_lock(&p->lock);
     while (!p->ending) {
-        picture *next = p->waiting;
+        picture *next = own->waiting;
         if (!next) {
             pthread_cond_wait(&p->changed, &p->lock);
             continue;
         }
-        p->waiting = NULL;
-        p->packing = true;
-        p->drafting = next->level == 0;
+        own->waiting = NULL;
+        own->packing = next;
         pthread_mutex_unlock(&p->lock);
         double begin = seconds();
         pack(p, next);
         pthread_mutex_lock(&p->lock);
-        if (p->drafting)
+        if (next->level == 0)
             p->pixel_seconds = (seconds() - begin) / pixels_of(next->image);
-        p->packing = p->drafting = false;
+        own->packing = NULL;
         next->next = p->done;
         p->done = next;
-        pthread_cond_signal(&p->changed);
+        pthread_cond_broadcast(&p->changed);
     }
     pthread_mutex_unlock(&p->lock);
     return NULL;
 }
 
-packer *packer_new(outbox *box) {
+/* An error number, or 0. */
+static int start(packer *p) {
+    int number = 0;
+    snow_context_set_progress(p->context, is_stale, p);
+    for (int i = 0; i < LANES && !number; i++) {
+        lane *own = &p->lanes[i];
+        own->of = p;
+        number = pthread_create(&own->thread, NULL, run, own);
+        own->runs = number == 0;
+    }
+    return number;
+}
+
+packer *packer_new(outbox *box, const viewer_state *state) {
     packer *p = calloc(1, sizeof *p);
     if (!p)
         return NULL;
     p->box = box;
+    p->state = state;
     pthread_mutex_init(&p->lock, NULL);
     pthread_cond_init(&p->changed, NULL);
     /* From here on nothing may print to standard output. */
@@ -291,9 +333,10 @@ packer *packer_new(outbox *box) {
     if (!number && snow_context_new(NULL, &p->context) != SNOW_STATUS_OK)
         number = ENOMEM;
     if (!number)
-        number = pthread_create(&p->thread, NULL, run, p);
+        number = start(p);
     if (!number)
         return p;
+    packer_end(p);
     packer_free(p);
     errno = number;
     return NULL;
@@ -306,21 +349,24 @@ static picture *take_done(packer *p) {
 }
 
 picture *packer_put(packer *p, picture *made) {
+    lane *own = &p->lanes[made->level == 2 ? AT_REST : MOVING];
     pthread_mutex_lock(&p->lock);
-    if (p->waiting) {
-        p->waiting->next = p->done;
-        p->done = p->waiting;
+    if (own->waiting) {
+        own->waiting->next = p->done;
+        p->done = own->waiting;
     }
-    p->waiting = made;
+    own->waiting = made;
     picture *done = take_done(p);
-    pthread_cond_signal(&p->changed);
+    pthread_cond_broadcast(&p->changed);
     pthread_mutex_unlock(&p->lock);
     return done;
 }
 
 void packer_wait_for_draft(packer *p) {
     pthread_mutex_lock(&p->lock);
-    while (p->drafting || (p->waiting && p->waiting->level == 0))
+    const lane *moving = &p->lanes[MOVING];
+    while ((moving->packing && moving->packing->level == 0) ||
+           (moving->waiting && moving->waiting->level == 0))
         pthread_cond_wait(&p->changed, &p->lock);
     pthread_mutex_unlock(&p->lock);
 }
@@ -334,8 +380,9 @@ double packer_pixel_seconds(packer *p) {
 
 picture *packer_wait(packer *p) {
     pthread_mutex_lock(&p->lock);
-    while (p->packing || p->waiting)
-        pthread_cond_wait(&p->changed, &p->lock);
+    for (int i = 0; i < LANES; i++)
+        while (p->lanes[i].packing || p->lanes[i].waiting)
+            pthread_cond_wait(&p->changed, &p->lock);
     picture *done = take_done(p);
     pthread_mutex_unlock(&p->lock);
     return done;
@@ -344,13 +391,20 @@ picture *packer_wait(packer *p) {
 picture *packer_end(packer *p) {
     pthread_mutex_lock(&p->lock);
     p->ending = true;
-    pthread_cond_signal(&p->changed);
+    pthread_cond_broadcast(&p->changed);
     pthread_mutex_unlock(&p->lock);
-    pthread_join(p->thread, NULL);
-    picture *last = p->waiting;
-    if (last)
-        last->next = p->done;
-    return last ? last : p->done;
+    for (int i = 0; i < LANES; i++) {
+        lane *own = &p->lanes[i];
+        if (own->runs)
+            pthread_join(own->thread, NULL);
+        if (own->waiting) {
+            own->waiting->next = p->done;
+            p->done = own->waiting;
+        }
+        own->runs = false;
+        own->waiting = NULL;
+    }
+    return take_done(p);
 }
 
 void packer_free(packer *p) {

@@ -1,4 +1,4 @@
-/* pack.h - packs pictures for the pages, in a thread of its own.
+/* pack.h - packs pictures for the pages, in two threads of its own.
  *
  * Drafts and normal pictures become JPEG, on thin links WebP.  The picture at
  * rest becomes the PNG that `snowglass render` writes, byte for byte, since the
@@ -7,6 +7,7 @@
 #define PACK_H
 
 #include "net/outbox.h"
+#include "state.h"
 
 #include <snowglass/snowglass.h>
 
@@ -24,8 +25,9 @@ typedef struct picture {
 
 typedef struct packer packer;
 
-/* Starts the thread; NULL: no memory, or no thread, as errno says. */
-packer *packer_new(outbox *box);
+/* Starts the threads; NULL: no memory, or no thread, as errno says.  The
+ * packing of a picture at rest ends where the state is a newer one by then. */
+packer *packer_new(outbox *box, const viewer_state *state);
 
 /* Ends it, and returns all pictures for the renderer to free. */
 picture *packer_end(packer *p);

@@ -149,8 +149,8 @@ EMSCRIPTEN_KEEPALIVE bool engine_open(const char *path, const char *recipe,
     tell_noted(false);
     pieces_begin(&e.drawing);
     renderer_begin(&e.drawing, e.state, e.box);
-    e.renderer = renderer_new(&e.drawing, e.state, e.box, packer_new(e.box),
-                              NULL, NULL, NULL);
+    e.renderer = renderer_new(&e.drawing, e.state, e.box,
+                              packer_new(e.box, e.state), NULL, NULL, NULL);
     outbox_set_audience(e.box, 1, 0, 0);
     state_set_watchers(e.state, 1);
     outbox_put(e.box, state_message(e.state, 0, 0));

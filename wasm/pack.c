@@ -14,7 +14,8 @@ struct packer {
     outbox *box;
 };
 
-packer *packer_new(outbox *box) {
+packer *packer_new(outbox *box, const viewer_state *state) {
+    (void)state;
     packer *p = malloc(sizeof *p);
     if (p)
         p->box = box;
