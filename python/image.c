@@ -225,7 +225,7 @@ static PyObject *image_save(PyObject *self, PyObject *args,
     options.overlay = overlay;
     if (!status)
         CALL(o->context, status,
-             rgb ? snow_image_to_rgb8_with(o->image, &options, bytes)
+             rgb ? snow_image_to_rgb8(o->image, &options, bytes)
                  : snow_image_save(o->image, path, &options));
     snow_overlay_free(overlay);
     if (context_leave(o->context, status))

@@ -155,7 +155,7 @@ static outgoing *pack_lossy(const snow_image *image,
     double begin = seconds();
     unsigned char *rgb = malloc(3 * (size_t)head->width * head->height);
     outgoing *made = NULL;
-    if (rgb && snow_image_to_rgb8_with(image, form, rgb) == SNOW_STATUS_OK)
+    if (rgb && snow_image_to_rgb8(image, form, rgb) == SNOW_STATUS_OK)
         made = compress(rgb, quality, head, begin);
     free(rgb);
     return made;

@@ -62,7 +62,7 @@ static outgoing *pack_levels(const snow_image *image,
     if (!made)
         return NULL;
     unsigned char *bytes = made->bytes + FRAME_HEAD_BYTES;
-    if (snow_image_to_rgb8_with(image, form, bytes) != SNOW_STATUS_OK) {
+    if (snow_image_to_rgb8(image, form, bytes) != SNOW_STATUS_OK) {
         free(made);
         return NULL;
     }

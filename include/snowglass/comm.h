@@ -9,8 +9,6 @@
 
 #include <snowglass/context.h>
 
-typedef struct snow_comm snow_comm;
-
 /* Makes a communicator of one rank. */
 SNOW_API snow_status snow_comm_new_self(snow_context *context, snow_comm **out);
 

@@ -37,6 +37,7 @@
     struct record
 
 typedef struct snow_context snow_context;
+typedef struct snow_comm snow_comm; /* snowglass/comm.h */
 
 /* The caller's memory. `allocate` returns memory aligned as malloc's, or NULL
  * where there is none. Threads that render call both, one at a time. */

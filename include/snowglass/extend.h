@@ -124,9 +124,7 @@ SNOW_API snow_status snow_comm_reduce_doubles(
     snow_comm *comm, double *values, size_t count, snow_reduce by);
 
 /* Returns how many voxels a box has. */
-static inline int64_t snow_box_voxels(const snow_box *box) {
-    return box->count[0] * box->count[1] * box->count[2];
-}
+SNOW_API int64_t snow_box_voxels(const snow_box *box);
 
 /* Gives what two boxes share; false, and *out untouched, where that is
  * nothing. */

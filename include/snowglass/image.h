@@ -55,10 +55,9 @@ SNOW_RECORD(snow_image_options);
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
     const snow_image_options *options);
 
-/* Check what snow_image_save would refuse, before the picture is made: by path
- * alone, or by path, size and options. Errors: those of snow_image_save. */
-SNOW_API snow_status snow_image_check_path(
-    snow_context *context, const char *path, bool overwrite);
+/* Checks what snow_image_save would refuse, before the picture is made; its
+ * sides are 1 where they are not known yet. Errors: those of snow_image_save.
+ */
 SNOW_API snow_status snow_image_check(snow_context *context, const char *path,
     int width, int height, const snow_image_options *options);
 
@@ -74,14 +73,10 @@ SNOW_API bool snow_image_format_has_depth(const char *path);
 SNOW_API const char *snow_image_format_suffix(size_t index, bool *built);
 
 /* Fills width * height * 3 bytes with the levels of red, green and blue that a
- * PNG of 8 bits on that background has. Errors: BAD_USAGE (a picture of one
- * channel, which is values; a background beyond 0 to 1). */
-SNOW_API snow_status snow_image_to_rgb8(
-    const snow_image *image, const double background[3], unsigned char *rgb);
-
-/* The same with the background and the overlay of options, on black unless
- * `flatten`. Errors: as above. */
-SNOW_API snow_status snow_image_to_rgb8_with(const snow_image *image,
+ * PNG of 8 bits has, with the overlay and the background of `options`, on black
+ * unless `flatten`. Errors: BAD_USAGE (a picture of one channel, which is
+ * values; a background beyond 0 to 1). */
+SNOW_API snow_status snow_image_to_rgb8(const snow_image *image,
     const snow_image_options *options, unsigned char *rgb);
 
 /* Reads a PNG, WebP, JPEG, NPY, PFM, EXR or TIFF as a picture of four channels;

@@ -230,11 +230,9 @@ SNOW_API void snow_mode_background(
  * and zoom. A view with a position or a target stays as it is. `transfer` NULL
  * stands for all of the volume. `comm` is NULL in one process; with ranks all
  * make the call. Errors: of snow_frame_render. */
-struct snow_comm;
-SNOW_API snow_status snow_view_fit(struct snow_comm *comm,
-    const snow_volume *volume, const snow_transfer *transfer,
-    const snow_settings *settings, const double *azimuths, size_t count,
-    snow_view *view);
+SNOW_API snow_status snow_view_fit(snow_comm *comm, const snow_volume *volume,
+    const snow_transfer *transfer, const snow_settings *settings,
+    const double *azimuths, size_t count, snow_view *view);
 
 /* Makes the view straight on the slices across an axis of the grid: "x", "y" or
  * "z", or the one that faces "axial", "coronal" or "sagittal" most. *found gets

@@ -41,10 +41,15 @@
 #include <snowglass/overlay.h>
 #include <snowglass/render.h>
 
-/* The version of these headers, for #if. */
+/* The version of these headers, and one number of it that rises with each: that
+ * of 1.2.3 is 1002003. "#if SNOWGLASS_VERSION_NUMBER >= 2000" asks for 0.2.0.
+ */
 #define SNOWGLASS_VERSION_MAJOR 0
 #define SNOWGLASS_VERSION_MINOR 1
 #define SNOWGLASS_VERSION_PATCH 0
+#define SNOWGLASS_VERSION_NUMBER                                          \
+    (SNOWGLASS_VERSION_MAJOR * 1000000 + SNOWGLASS_VERSION_MINOR * 1000 + \
+        SNOWGLASS_VERSION_PATCH)
 
 /* Returns the version of the library that is linked, such as "0.1.0". */
 SNOW_API const char *snow_version(void);

@@ -34,9 +34,6 @@ SNOW_API void snow_transfer_free(snow_transfer *transfer);
  * transparent. Errors: BAD_USAGE (a point at 0 or below). */
 SNOW_API snow_status snow_transfer_set_log(snow_transfer *transfer);
 
-/* Returns whether points are joined by logarithms. */
-SNOW_API bool snow_transfer_is_log(const snow_transfer *transfer);
-
 /* Sets a factor of the opacity by the gradient's magnitude, that of central
  * differences in data units per unit of the world. `points` are copied; a count
  * of 0 removes the factor. A frame that keeps its encoding goes on to report
@@ -119,7 +116,7 @@ SNOW_API void snow_transfer_domain(
     const snow_transfer *transfer, double *low, double *high);
 
 /* Fills *out with the points in use, in data units, which stay the transfer
- * function's. */
+ * function's, and whether logarithms join them. */
 SNOW_API snow_status snow_transfer_get_look(
     const snow_transfer *transfer, snow_look *out);
 

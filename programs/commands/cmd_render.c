@@ -132,7 +132,10 @@ int check_picture_paths(snow_context *context, const options *opts) {
         context, opts->output, (int)(opts->size[0] ? opts->size[0] : 1),
         (int)(opts->size[1] ? opts->size[1] : 1), &form);
     if (status == SNOW_STATUS_OK && opts->depth && !is_beside(opts))
-        status = snow_image_check_path(context, opts->depth, opts->overwrite);
+        status = snow_image_check(
+            context, opts->depth, 1, 1,
+            &(snow_image_options){.size = sizeof(snow_image_options),
+                                  .overwrite = opts->overwrite});
     if (status != SNOW_STATUS_OK)
         return fail_status(context, status);
     return opts->stats ? check_stats_path(opts->stats, opts->overwrite)

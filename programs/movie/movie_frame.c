@@ -44,7 +44,7 @@ static snow_status fill_bytes(const movie *s, frame_slot *slot,
             "out of memory for the bytes of a frame; use a smaller --size");
         return SNOW_STATUS_NO_MEMORY;
     }
-    snow_image_to_rgb8_with(slot->image, form, slot->work);
+    snow_image_to_rgb8(slot->image, form, slot->work);
     return SNOW_STATUS_OK;
 }
 

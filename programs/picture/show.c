@@ -128,7 +128,7 @@ int show_picture(const snow_image *image, const snow_image_options *form) {
         return fail_memory("out of memory to show %d x %d pixels; use a "
                            "smaller --size",
                            p.width, p.height);
-    snow_image_to_rgb8_with(image, form, p.rgb);
+    snow_image_to_rgb8(image, form, p.rgb);
     if (has_kitty())
         print_kitty(&p);
     else

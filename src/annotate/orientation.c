@@ -72,14 +72,16 @@ snow_status snow_overlay_orientation(snow_overlay *overlay,
      * at the middle of its edges. */
     static const double shares[4][2] = {{0, 0.5}, {1, 0.5}, {0.5, 0}, {0.5, 1}};
     char letters[4][4];
-    SNOW_TRY(snow_view_orientation(overlay->context, info, view, letters));
+    snow_view from;
+    SNOW_TRY(SNOW_RECORD_READ(overlay->context, snow_view, view, &from));
+    SNOW_TRY(snow_view_orientation(overlay->context, info, &from, letters));
     if (overlay->width < 64 || overlay->height < 64)
         return SNOW_STATUS_OK;
     double margin = MARGIN * snow_shorter_side(overlay);
     for (int n = 0; n < 4; n++)
         SNOW_TRY(snow_overlay_text(
             overlay,
-            margin + shares[n][0] * (snow_view_room(view) - 2 * margin),
+            margin + shares[n][0] * (snow_view_room(&from) - 2 * margin),
             margin + shares[n][1] * (overlay->height - 2 * margin),
             shares[n][0], shares[n][1], snow_overlay_text_height(overlay),
             letters[n]));

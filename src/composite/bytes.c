@@ -40,9 +40,9 @@ void snow_bytes_clear(int width, int height, const snow_bytes *to) {
 #define SOME_RGB 256
 
 /* Allocates no memory: frames of a movie are made while others are rendered. */
-snow_status snow_image_to_rgb8_with(const snow_image *image,
-                                    const snow_image_options *given,
-                                    unsigned char *rgb) {
+snow_status snow_image_to_rgb8(const snow_image *image,
+                               const snow_image_options *given,
+                               unsigned char *rgb) {
     snow_image_options options;
     SNOW_TRY(
         SNOW_RECORD_READ(image->context, snow_image_options, given, &options));
@@ -73,11 +73,4 @@ snow_status snow_image_to_rgb8_with(const snow_image *image,
                 memcpy(rgb, rgba + 4 * i, 3);
         }
     return SNOW_STATUS_OK;
-}
-
-snow_status snow_image_to_rgb8(const snow_image *image,
-                               const double background[3], unsigned char *rgb) {
-    snow_image_options options = {.size = sizeof options, .flatten = true};
-    memcpy(options.background, background, sizeof options.background);
-    return snow_image_to_rgb8_with(image, &options, rgb);
 }

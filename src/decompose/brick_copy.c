@@ -105,6 +105,10 @@ void snow_brick_copy(const snow_brick *brick, size_t value, const snow_box *box,
     copy(&o, value);
 }
 
+int64_t snow_box_voxels(const snow_box *box) {
+    return box->count[0] * box->count[1] * box->count[2];
+}
+
 bool snow_box_intersect(const snow_box *a, const snow_box *b, snow_box *out) {
     snow_box shared;
     for (int i = 0; i < 3; i++) {

@@ -221,10 +221,8 @@ snow_status snow_image_save(const snow_image *image, const char *path,
 
 /* The writer itself knows best what it can write, so one is opened and aborted.
  * Standard output always exists and must not be written to here. */
-snow_status snow_image_check_path(snow_context *context, const char *path,
-                                  bool overwrite) {
-    const snow_image_format *format = NULL;
-    SNOW_TRY(choose_format(context, path, &format));
+static snow_status check_place(snow_context *context, const char *path,
+                               bool overwrite) {
     /* Who reads a pipe takes the end of this check for the end of the
      * picture. */
     struct stat here;
@@ -244,7 +242,7 @@ snow_status snow_image_check(snow_context *context, const char *path, int width,
     SNOW_TRY(SNOW_RECORD_READ(context, snow_image_options, given, &options));
     SNOW_TRY(choose_format(context, path, &format));
     SNOW_TRY(check_options(context, path, width, height, format, &options));
-    return snow_image_check_path(context, path, options.overwrite);
+    return check_place(context, path, options.overwrite);
 }
 
 /* The format that the first bytes of an open source show. */

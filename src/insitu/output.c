@@ -31,6 +31,11 @@ static const char *find_number(const char *pattern, int *digits, size_t *end) {
     return *p == 'd' && *digits <= 18 ? at : NULL;
 }
 
+static snow_status check_path(snow_context *context, const char *path) {
+    const snow_image_options over = {.size = sizeof over, .overwrite = true};
+    return snow_image_check(context, path, 1, 1, &over);
+}
+
 /* Alike on all ranks: no file is looked at. */
 static snow_status check_pattern(snow_context *context, const char *pattern) {
     int digits;
@@ -41,9 +46,8 @@ static snow_status check_pattern(snow_context *context, const char *pattern) {
             "%.200s: a movie's path has one %%d or %%04d for "
             "the number of the step",
             pattern);
-    return snow_image_format_bits(pattern) >= 0
-               ? SNOW_STATUS_OK
-               : snow_image_check_path(context, pattern, true);
+    return snow_image_format_bits(pattern) >= 0 ? SNOW_STATUS_OK
+                                                : check_path(context, pattern);
 }
 
 /* What allows that files are replaced stays, unless it comes with an output. */
@@ -266,7 +270,7 @@ static snow_status check_free(const snow_insitu *insitu, int64_t step) {
     snow_status status =
         snow_image_check(context, path, view.width, view.height, &insitu->form);
     if (status != SNOW_STATUS_BAD_OUTPUT ||
-        snow_image_check_path(context, path, true) != SNOW_STATUS_OK)
+        check_path(context, path) != SNOW_STATUS_OK)
         return status;
     return snow_context_fail(
         context, status,
@@ -293,7 +297,7 @@ static snow_status try_first(const snow_insitu *insitu, const char *pattern) {
     if (snow_comm_rank(insitu->comm) != 0 || strchr(strchr(pattern, '%'), '/'))
         return SNOW_STATUS_OK;
     INSITU_TRY(format_path(insitu, pattern, 0, path));
-    return snow_image_check_path(insitu->context, path, true);
+    return check_path(insitu->context, path);
 }
 
 snow_status snow_insitu_try_output(snow_insitu *insitu, const char *output) {

@@ -199,10 +199,6 @@ bool snow_transfer_is_unshaded(const snow_transfer *transfer) {
     return transfer->unshaded;
 }
 
-bool snow_transfer_is_log(const snow_transfer *transfer) {
-    return transfer->log;
-}
-
 const snow_label *snow_transfer_label(const snow_transfer *transfer,
                                       size_t index) {
     return index < transfer->label_count ? &transfer->labels[index] : NULL;

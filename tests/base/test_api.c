@@ -112,7 +112,7 @@ static void a_path_that_is_null_is_refused(void **state) {
     NO_PATH(snow_volume_open_streamed(context, NULL, NULL, 0, &volume));
     NO_PATH(snow_render_file(context, NULL, NULL, NULL, &image));
     NO_PATH(snow_image_load(context, NULL, &image));
-    NO_PATH(snow_image_check_path(context, NULL, false));
+    NO_PATH(snow_image_check(context, NULL, 1, 1, NULL));
     NO_PATH(snow_look_load(context, NULL, &look));
     assert_true(!volume && !image && !look);
     assert_int_equal(snow_image_new(context, 1, 1, 4, &other), SNOW_STATUS_OK);
@@ -216,7 +216,9 @@ static void a_range_that_is_none_is_refused(void **state) {
 
 /* Values are no colours, and a background is 0 to 1, as in files. */
 static void levels_are_made_of_colours_alone(void **state) {
-    static const double black[3] = {0}, seven[3] = {7, 0, 0};
+    const snow_image_options black = {.size = sizeof black, .flatten = true};
+    const snow_image_options seven = {
+        .size = sizeof seven, .flatten = true, .background = {7}};
     unsigned char rgb[3] = {9, 9, 9};
     snow_context *context = support_context();
     snow_image *values = NULL, *colors = NULL;
@@ -225,14 +227,14 @@ static void levels_are_made_of_colours_alone(void **state) {
     assert_int_equal(snow_image_new(context, 1, 1, 4, &colors), SNOW_STATUS_OK);
     assert_ptr_equal(snow_image_data(colors), snow_image_pixels(colors));
     snow_image_pixels(values)[0] = 1;
-    assert_int_equal(snow_image_to_rgb8(values, black, rgb),
+    assert_int_equal(snow_image_to_rgb8(values, &black, rgb),
                      SNOW_STATUS_BAD_USAGE);
-    assert_int_equal(snow_image_to_rgb8_with(values, NULL, rgb),
+    assert_int_equal(snow_image_to_rgb8(values, NULL, rgb),
                      SNOW_STATUS_BAD_USAGE);
-    assert_int_equal(snow_image_to_rgb8(colors, seven, rgb),
+    assert_int_equal(snow_image_to_rgb8(colors, &seven, rgb),
                      SNOW_STATUS_BAD_USAGE);
     assert_true(rgb[0] == 9 && rgb[2] == 9);
-    assert_int_equal(snow_image_to_rgb8(colors, black, rgb), SNOW_STATUS_OK);
+    assert_int_equal(snow_image_to_rgb8(colors, &black, rgb), SNOW_STATUS_OK);
     assert_true(rgb[0] == 0 && rgb[2] == 0);
     snow_image_free(values);
     snow_image_free(colors);
@@ -264,10 +266,26 @@ static void shapes_without_a_place_are_refused(void **state) {
                      SNOW_STATUS_BAD_USAGE);
     assert_int_equal(snow_overlay_color_bar(o, transfer, NULL, NULL, 0, 1),
                      SNOW_STATUS_OK);
+    assert_int_equal(
+        snow_overlay_orientation(o, snow_volume_get_info(volume), NULL),
+        SNOW_STATUS_OK);
     snow_overlay_free(o);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
     snow_context_free(context);
+}
+
+/* What #if sees is what the library says of itself. */
+static void the_number_of_the_version_has_its_parts(void **state) {
+    char text[32];
+    (void)state;
+#if SNOWGLASS_VERSION_NUMBER < 1000
+    fail();
+#endif
+    snprintf(text, sizeof text, "%d.%d.%d", SNOWGLASS_VERSION_NUMBER / 1000000,
+             SNOWGLASS_VERSION_NUMBER / 1000 % 1000,
+             SNOWGLASS_VERSION_NUMBER % 1000);
+    assert_string_equal(text, snow_version());
 }
 
 /* The keys that a cleared recipe writes are those of a new one. */
@@ -579,6 +597,7 @@ int main(void) {
         cmocka_unit_test(a_range_that_is_none_is_refused),
         cmocka_unit_test(levels_are_made_of_colours_alone),
         cmocka_unit_test(shapes_without_a_place_are_refused),
+        cmocka_unit_test(the_number_of_the_version_has_its_parts),
         cmocka_unit_test(a_cleared_recipe_is_a_new_one),
         cmocka_unit_test(initialisers_reach_as_far_as_the_callers_record),
         cmocka_unit_test(initialisers_give_the_documented_defaults),

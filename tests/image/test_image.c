@@ -100,6 +100,13 @@ static void the_name_decides_the_format(void **state) {
     snow_image_free(image);
 }
 
+static snow_status check_path(snow_context *context, const char *path,
+                              bool overwrite) {
+    const snow_image_options options = {.size = sizeof options,
+                                        .overwrite = overwrite};
+    return snow_image_check(context, path, 1, 1, &options);
+}
+
 static void an_unknown_suffix_is_bad_usage(void **state) {
     image_fixture *f = *state;
     snow_image *image = support_picture(f->context, 3, 3, 4, 1);
@@ -108,7 +115,7 @@ static void an_unknown_suffix_is_bad_usage(void **state) {
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         assert_int_equal(snow_image_save(image, names[i], NULL),
                          SNOW_STATUS_BAD_USAGE);
-        assert_int_equal(snow_image_check_path(f->context, names[i], true),
+        assert_int_equal(check_path(f->context, names[i], true),
                          SNOW_STATUS_BAD_USAGE);
         assert_non_null(strstr(snow_context_message(f->context), ".npy"));
     }
@@ -157,14 +164,13 @@ static void an_existing_file_is_kept_unless_told(void **state) {
         support_write_file(path, "precious", 8);
         assert_int_equal(snow_image_save(image, path, NULL),
                          SNOW_STATUS_BAD_OUTPUT);
-        assert_int_equal(snow_image_check_path(f->context, path, false),
+        assert_int_equal(check_path(f->context, path, false),
                          SNOW_STATUS_BAD_OUTPUT);
         support_bytes file = support_read_file(path);
         assert_int_equal(file.size, 8);
         assert_memory_equal(file.bytes, "precious", 8);
         free(file.bytes);
-        assert_int_equal(snow_image_check_path(f->context, path, true),
-                         SNOW_STATUS_OK);
+        assert_int_equal(check_path(f->context, path, true), SNOW_STATUS_OK);
         const snow_image_options over = {.size = sizeof over,
                                          .overwrite = true};
         assert_int_equal(snow_image_save(image, path, &over), SNOW_STATUS_OK);
@@ -183,7 +189,7 @@ static void a_missing_folder_is_bad_output(void **state) {
     snprintf(path, sizeof path, "%s/none/a.png", f->folder);
     assert_int_equal(snow_image_save(image, path, NULL),
                      SNOW_STATUS_BAD_OUTPUT);
-    assert_int_equal(snow_image_check_path(f->context, path, false),
+    assert_int_equal(check_path(f->context, path, false),
                      SNOW_STATUS_BAD_OUTPUT);
     assert_non_null(strstr(snow_context_message(f->context), path));
     snow_image_free(image);
@@ -197,7 +203,7 @@ static void a_folder_that_takes_no_files_is_bad_output(void **state) {
     snow_image *image = support_picture(f->context, 3, 3, 4, 1);
     assert_int_equal(snow_image_save(image, "/proc/snow.png", NULL),
                      SNOW_STATUS_BAD_OUTPUT);
-    assert_int_equal(snow_image_check_path(f->context, "/proc/snow.png", true),
+    assert_int_equal(check_path(f->context, "/proc/snow.png", true),
                      SNOW_STATUS_BAD_OUTPUT);
     snow_image_free(image);
 }
@@ -205,10 +211,8 @@ static void a_folder_that_takes_no_files_is_bad_output(void **state) {
 static void checking_a_path_leaves_nothing(void **state) {
     image_fixture *f = *state;
     const char *path = support_image_path(f, "a.png");
-    assert_int_equal(snow_image_check_path(f->context, path, false),
-                     SNOW_STATUS_OK);
-    assert_int_equal(snow_image_check_path(f->context, "-", false),
-                     SNOW_STATUS_OK);
+    assert_int_equal(check_path(f->context, path, false), SNOW_STATUS_OK);
+    assert_int_equal(check_path(f->context, "-", false), SNOW_STATUS_OK);
     assert_int_equal(support_folder_files(f->folder), 0);
 }
 

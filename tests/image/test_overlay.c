@@ -307,7 +307,7 @@ static void draw_on(image_fixture *f, double grey, bool flat, float *dark,
                                         .background = {grey, grey, grey}};
     unsigned char *bytes = malloc(60 * 60 * 3);
     snow_image *read = support_round_trip(f, image, "a.png", &options);
-    snow_image_to_rgb8_with(image, &options, bytes);
+    snow_image_to_rgb8(image, &options, bytes);
     *dark = 1;
     *bright = 0;
     for (size_t i = 0; i < 60 * 60; i++) {
@@ -574,7 +574,7 @@ static void files_show_it_and_the_picture_stays(void **state) {
             assert_true(found);
             /* What a movie gets is what a flat file holds. */
             unsigned char *bytes = malloc(140 * 130 * 3);
-            snow_image_to_rgb8_with(image, &options, bytes);
+            snow_image_to_rgb8(image, &options, bytes);
             for (int i = 0; flat && i < 140 * 130 * 3; i++)
                 assert_int_equal(
                     bytes[i],

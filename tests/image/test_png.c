@@ -277,7 +277,7 @@ static void bytes_for_encoders_are_those_of_a_file(void **state) {
             store_row(f, snow_image_pixels(image), 700, channels, &flat);
         size_t step = (size_t)d.row_bytes / 700;
         assert_int_equal(step, n == 2 ? 1 : 3);
-        snow_image_to_rgb8(image, flat.background, rgb);
+        snow_image_to_rgb8(image, &flat, rgb);
         for (size_t i = 0; i < sizeof rgb; i++)
             assert_int_equal(rgb[i], d.bytes[step == 1 ? i / 3 : i]);
         snow_image_free(image);

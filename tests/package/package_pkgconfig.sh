@@ -80,7 +80,7 @@ check "static: needs no library of ours" needs_no_snowglass ./static
 cat >recipe.c <<'END'
 #include <snowglass/recipe.h>
 #include <snowglass/snowglass.h>
-#if SNOWGLASS_VERSION_MAJOR * 100 + SNOWGLASS_VERSION_MINOR < 1
+#if SNOWGLASS_VERSION_NUMBER < 1000 || SNOWGLASS_VERSION_NUMBER >= 1000000000
 #error "no version"
 #endif
 int main(void) {
