@@ -133,6 +133,7 @@ typedef struct image_object {
     PyObject *transfer;
     snow_volume_info info;
     snow_view view;
+    bool placed; /* the view is that of all pixels */
 } image_object;
 
 /* Leaves a strip of a view whose size is known to (legend, unit or None, (low,

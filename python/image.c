@@ -175,10 +175,10 @@ static snow_status annotate(const image_object *o, const annotations *a,
 /* To a file, or without a path as red, green and blue: bytes. */
 static PyObject *image_save(PyObject *self, PyObject *args,
                             PyObject *keywords) {
-    static char *names[] = {"path",    "background", "bits",  "overwrite",
-                            "letters", "legend",     "unit",  "scale_bar",
-                            "title",   "depth",      "range", "bars",
-                            "texts",   "measures", "value_unit", "progress",   NULL};
+    static char *names[] = {
+        "path",  "background", "bits",       "overwrite", "letters", "legend",
+        "unit",  "scale_bar",  "title",      "depth",     "range",   "bars",
+        "texts", "measures",   "value_unit", "progress",  NULL};
     image_object *o = (image_object *)self;
     snow_image_options options;
     PyObject *file, *background = Py_None, *depth = Py_None, *rgb = NULL;
@@ -188,9 +188,9 @@ static PyObject *image_save(PyObject *self, PyObject *args,
     annotations a = {.range = {NAN, NAN}};
     snow_image_options_init(&options);
     if (!PyArg_ParseTupleAndKeywords(
-            args, keywords, "O|$OipppzpzO(dd)O!O!O!zO", names, &file, &background,
-            &options.bits, &overwrite, &a.letters, &a.legend, &a.unit,
-            &a.scale_bar, &a.title, &depth, &a.range[0], &a.range[1],
+            args, keywords, "O|$OipppzpzO(dd)O!O!O!zO", names, &file,
+            &background, &options.bits, &overwrite, &a.letters, &a.legend,
+            &a.unit, &a.scale_bar, &a.title, &depth, &a.range[0], &a.range[1],
             &PyTuple_Type, &a.bars, &PyTuple_Type, &a.texts, &PyTuple_Type,
             &a.measures, &a.value_unit, &progress))
         return NULL;
@@ -263,7 +263,37 @@ static PyObject *image_paint(PyObject *self, PyObject *args) {
     made->transfer = Py_NewRef(o->transfer);
     made->info = o->info;
     made->view = o->view;
+    made->placed = o->placed;
     return Py_BuildValue("(Ndd)", image, low, high);
+}
+
+/* places(points or pixels, whether these are pixels): three doubles each, as
+ * bytes -> the others, as bytes */
+static PyObject *image_places(PyObject *self, PyObject *args) {
+    image_object *o = (image_object *)self;
+    const size_t one = 3 * sizeof(double);
+    Py_buffer given;
+    int back;
+    snow_status status = SNOW_STATUS_BAD_USAGE;
+    if (!o->placed)
+        return PyErr_Format(PyExc_ValueError,
+                            "the picture knows no place in the world: ask one "
+                            "of Volume.render or Volume.slice");
+    if (!PyArg_ParseTuple(args, "y*p", &given, &back))
+        return NULL;
+    const size_t count = (size_t)given.len / one;
+    PyObject *bytes = PyBytes_FromStringAndSize(NULL, given.len);
+    bool fine = bytes && context_enter(o->context, Py_None);
+    if (fine) {
+        double *out = (double *)(void *)PyBytes_AsString(bytes);
+        status = (back ? snow_view_pixel_to_world : snow_view_world_to_pixel)(
+            o->context->context, &o->info, &o->view, given.buf, count, out);
+        fine = context_leave(o->context, status);
+    }
+    PyBuffer_Release(&given);
+    if (!fine)
+        Py_CLEAR(bytes);
+    return bytes;
 }
 
 static PyObject *image_load(PyObject *module, PyObject *args) {
@@ -318,6 +348,7 @@ static PyObject *format_bits(PyObject *module, PyObject *path) {
 static PyMethodDef image_methods[] = {
     METHOD("_save", image_save, METH_VARARGS | METH_KEYWORDS,
            "to a file, or as bytes"),
+    METHOD("_places", image_places, METH_VARARGS, "in the world, or in pixels"),
     METHOD("_paint", image_paint, METH_VARARGS, "values as colours"),
     {NULL, NULL, 0, NULL}};
 static PyGetSetDef image_values[] = {

@@ -251,6 +251,7 @@ static PyObject *finish_image(PyObject *type, const request *r,
     made->transfer = Py_XNewRef((PyObject *)r->transfer);
     made->info = *info;
     made->view = r->view;
+    made->placed = true;
     return image;
 }
 
@@ -520,6 +521,8 @@ PyObject *volume_slices(PyObject *self, PyObject *args) {
     const bool fine = context_leave(o->context, status);
     r.image = s.image;
     PyObject *image = finish_image(type, &r, &info);
+    if (image)
+        ((image_object *)image)->placed = false;
     if (fine && image && s.places)
         out = Py_BuildValue("(OO)", image, s.places);
     Py_XDECREF(image);

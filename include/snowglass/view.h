@@ -63,4 +63,20 @@ SNOW_API const char *snow_view_name(size_t index);
 SNOW_API double snow_view_zoom_for_voxels(
     const snow_volume *volume, int width, int height);
 
+/* Finds where `count` points of the world are seen in a view's picture of a
+ * volume. A point has three numbers, x, y and z. So has a pixel: x to the
+ * right, y down (the middle of the first pixel is at 0.5, 0.5), and its depth,
+ * as snow_frame_depth gives it. What is behind the eye of a perspective view is
+ * NaN. `info` is that of the whole volume, `view` the one that was drawn. Both
+ * arrays may be one. Errors: of snow_frame_render, of the view. */
+SNOW_API snow_status snow_view_world_to_pixel(snow_context *context,
+    const snow_volume_info *info, const snow_view *view, const double *points,
+    size_t count, double *pixels);
+
+/* Finds the points of the world that are seen at pixels with depths: the way
+ * back. Those without a depth, which is NaN, are NaN. Errors: as above. */
+SNOW_API snow_status snow_view_pixel_to_world(snow_context *context,
+    const snow_volume_info *info, const snow_view *view, const double *pixels,
+    size_t count, double *points);
+
 #endif

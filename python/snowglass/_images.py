@@ -137,6 +137,30 @@ class Image(_snowglass.Image):
     def _repr_png_(self) -> bytes:
         return self.png()
 
+    def world_to_pixel(self, points: Any) -> "numpy.typing.NDArray[Any]":
+        """Where points of the world, of shape (..., 3), are in the picture: x to the
+        right, y down (the middle of the first pixel is at 0.5, 0.5), and the depth, as
+        `depth` has it.  The world is that of `Volume.affine`.  NaN: behind the eye."""
+        return self._places_of("points", points, False)
+
+    def pixel_to_world(self, pixels: Any) -> "numpy.typing.NDArray[Any]":
+        """The way back: the points of the world, of shape (..., 3), that are seen at
+        pixels x, y with a depth.  NaN where a depth is NaN."""
+        return self._places_of("pixels", pixels, True)
+
+    def _places_of(self, name: str, given: Any, back: bool
+                   ) -> "numpy.typing.NDArray[Any]":
+        import numpy
+        try:
+            places = numpy.ascontiguousarray(given, numpy.float64)
+        except (TypeError, ValueError):
+            places = numpy.empty(0)
+        if places.shape[-1] != 3:  # of a number it is 1
+            raise _checks.fault(name, "three numbers each, in an array of shape "
+                                "(..., 3)", given, ValueError)
+        found = numpy.frombuffer(self._places(places, back))
+        return found.reshape(places.shape).copy()
+
     def show(self) -> None:
         """Shows it in the program of this machine for PNG files; in a notebook a
         picture shows itself."""

@@ -53,12 +53,9 @@ static void point_of(const box_view *b, const double at[3], double point[3]) {
 }
 
 static void project(const box_view *b, const double at[3], double pixel[2]) {
-    double p[3], scale = 1 / b->camera.pitch;
+    double p[3];
     point_of(b, at, p);
-    if (b->camera.distance > 0)
-        scale *= b->camera.distance / (b->camera.distance - p[2]);
-    pixel[0] = b->camera.target[0] + scale * p[0];
-    pixel[1] = b->camera.target[1] - scale * p[1];
+    snow_camera_pixel(&b->camera, p, pixel);
 }
 
 static void find_faces(box_view *b) {

@@ -33,25 +33,17 @@ typedef struct measure_view {
 /* A place of the world, in pixels; false: it is behind the camera. */
 static bool project(const measure_view *m, const double place[3],
                     double pixel[2]) {
-    const snow_camera *camera = &m->camera;
-    const double *frame[3] = {camera->right, camera->up, camera->back};
-    double from[3], p[3], scale = 1 / camera->pitch;
+    double world[3], point[3];
     for (int i = 0; i < 3; i++) {
         const double length = m->info->axis_scale[i];
-        double middle = m->info->matrix[i][3];
-        for (int j = 0; j < 3; j++)
-            middle +=
-                m->info->matrix[i][j] * ((double)m->info->dims[j] - 1) / 2;
-        from[i] = place[i] * (fabs(length) > 0 ? length : 1) - middle;
+        world[i] = place[i] * (fabs(length) > 0 ? length : 1);
     }
-    for (int i = 0; i < 3; i++)
-        p[i] = camera->middle[i] + snow_dot(frame[i], from);
-    if (camera->distance > 0 && p[2] > 0.999 * camera->distance)
+    snow_camera_point(&m->camera, m->info, world, point);
+    if (m->camera.distance > 0 && point[2] > 0.999 * m->camera.distance)
         return false;
-    if (camera->distance > 0)
-        scale *= camera->distance / (camera->distance - p[2]);
-    pixel[0] = m->bounds[0] + camera->target[0] + scale * p[0];
-    pixel[1] = m->bounds[1] + camera->target[1] - scale * p[1];
+    snow_camera_pixel(&m->camera, point, pixel);
+    for (int i = 0; i < 2; i++)
+        pixel[i] += m->bounds[i];
     return true;
 }
 

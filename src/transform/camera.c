@@ -195,3 +195,106 @@ snow_status snow_camera_make(snow_context *context,
     *out = c;
     return SNOW_STATUS_OK;
 }
+
+/* --- places and pixels ---------------------------------------------------- */
+
+/* The middle of the voxel boxes. */
+static void middle_of(const snow_volume_info *info, double middle[3]) {
+    for (int i = 0; i < 3; i++) {
+        middle[i] = info->matrix[i][3];
+        for (int axis = 0; axis < 3; axis++)
+            middle[i] +=
+                info->matrix[i][axis] * ((double)info->dims[axis] - 1) / 2;
+    }
+}
+
+void snow_camera_point(const snow_camera *camera, const snow_volume_info *info,
+                       const double place[3], double point[3]) {
+    const double *frame[3] = {camera->right, camera->up, camera->back};
+    double middle[3], from[3];
+    middle_of(info, middle);
+    for (int i = 0; i < 3; i++)
+        from[i] = place[i] - middle[i];
+    for (int i = 0; i < 3; i++)
+        point[i] = camera->middle[i] + snow_dot(frame[i], from);
+}
+
+void snow_camera_place(const snow_camera *camera, const snow_volume_info *info,
+                       const double point[3], double place[3]) {
+    const double *frame[3] = {camera->right, camera->up, camera->back};
+    middle_of(info, place);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            place[i] += frame[k][i] * (point[k] - camera->middle[k]);
+}
+
+void snow_camera_pixel(const snow_camera *camera, const double point[3],
+                       double pixel[2]) {
+    double scale = 1 / camera->pitch;
+    if (camera->distance > 0)
+        scale *= camera->distance / (camera->distance - point[2]);
+    pixel[0] = camera->target[0] + scale * point[0];
+    pixel[1] = camera->target[1] - scale * point[1];
+}
+
+/* Whether a point is seen from the eye; not where it is no number. */
+static bool is_in_front(const snow_camera *camera, double back) {
+    return camera->distance > 0 ? back < camera->distance : isfinite(back);
+}
+
+/* The world's length of a pixel's side there; NaN where nothing is seen. */
+static double pixel_length(const snow_camera *camera, double back) {
+    if (!is_in_front(camera, back))
+        return NAN;
+    return camera->distance > 0
+               ? camera->pitch * (camera->distance - back) / camera->distance
+               : camera->pitch;
+}
+
+/* The camera of records of a caller. */
+static snow_status read_camera(snow_context *context,
+                               const snow_volume_info *given,
+                               const snow_view *view, snow_volume_info *info,
+                               snow_camera *out) {
+    snow_view from;
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_info, given, info));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_view, view, &from));
+    return snow_camera_make(context, info, &from, out);
+}
+
+snow_status snow_view_world_to_pixel(snow_context *context,
+                                     const snow_volume_info *info,
+                                     const snow_view *view,
+                                     const double *places, size_t count,
+                                     double *pixels) {
+    snow_volume_info volume;
+    snow_camera camera;
+    SNOW_TRY(read_camera(context, info, view, &volume, &camera));
+    for (size_t n = 0; n < 3 * count; n += 3) {
+        double point[3];
+        snow_camera_point(&camera, &volume, places + n, point);
+        snow_camera_pixel(&camera, point, pixels + n);
+        pixels[n + 2] = -point[2];
+        for (int i = 0; i < 3 && !is_in_front(&camera, point[2]); i++)
+            pixels[n + (size_t)i] = NAN;
+    }
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_view_pixel_to_world(snow_context *context,
+                                     const snow_volume_info *info,
+                                     const snow_view *view,
+                                     const double *pixels, size_t count,
+                                     double *places) {
+    snow_volume_info volume;
+    snow_camera camera;
+    SNOW_TRY(read_camera(context, info, view, &volume, &camera));
+    for (size_t n = 0; n < 3 * count; n += 3) {
+        double point[3] = {0, 0, -pixels[n + 2]};
+        const double length = pixel_length(&camera, point[2]);
+        point[0] = length * (pixels[n] - camera.target[0]);
+        point[1] = length * (camera.target[1] - pixels[n + 1]);
+        snow_camera_place(&camera, &volume, point, places + n);
+    }
+    return SNOW_STATUS_OK;
+}

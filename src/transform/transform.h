@@ -72,6 +72,18 @@ snow_status snow_camera_make(snow_context *context,
                              const snow_volume_info *info,
                              const snow_view *view, snow_camera *out);
 
+/* The point of a place in the world, along right, up and back of the target;
+ * and the place of a point. */
+void snow_camera_point(const snow_camera *camera, const snow_volume_info *info,
+                       const double place[3], double point[3]);
+void snow_camera_place(const snow_camera *camera, const snow_volume_info *info,
+                       const double point[3], double place[3]);
+
+/* Where a point is in the picture, in pixels.  In perspective it must be in
+ * front of the eye. */
+void snow_camera_pixel(const snow_camera *camera, const double point[3],
+                       double pixel[2]);
+
 /* Places a volume before a camera (model, sections 2, 5 and 6). The slice axis
  * is the one whose slice normal is most parallel to the line of sight; within
  * 1e-6, z before y before x. Errors: SNOW_STATUS_BAD_USAGE (the view),

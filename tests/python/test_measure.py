@@ -1,4 +1,5 @@
-"""Measures: lengths, angles and ellipses beside NumPy's, drawn, and in recipes."""
+"""Measures: lengths, angles and ellipses beside NumPy's, drawn, and in recipes; points of
+the world and pixels of pictures."""
 import numpy
 
 import snowglass as sg
@@ -82,3 +83,60 @@ class Measures(InFolder):
             volume.render(measure="line 10,0,40 500,1,1")
         with self.assertRaisesRegex(TypeError, "measure"):
             volume.slice(measure=7)
+
+
+MIDDLE, RADIUS = numpy.array([10.0, -20, 30]), 9.0
+
+
+def oblique(order="F"):
+    """The distance to a sphere, on a grid that is neither even nor upright."""
+    shape = numpy.array([26, 30, 22])
+    steps = numpy.array([[0.9, 0.2, 0], [-0.3, 1, 0.3], [0.1, -0.2, 1.2]])
+    affine = numpy.eye(4)
+    affine[:3, :3], affine[:3, 3] = steps, MIDDLE - steps @ ((shape - 1) / 2)
+    index = numpy.indices(shape).reshape(3, -1)
+    away = numpy.linalg.norm(steps @ index + affine[:3, 3:] - MIDDLE[:, None], axis=0)
+    voxels = (RADIUS - away).reshape(shape).astype("f4")
+    return sg.Volume(numpy.asarray(voxels, order=order), axes="xyz", affine=affine)
+
+
+class Places(InFolder):
+    def test_depths_are_points_of_the_surface(self):
+        for order in "CF":
+            for more in ({}, {"perspective": 40}, {"target": (12, -19, 31), "zoom": 1.3},
+                         {"position": (60, -50, 80), "target": (11, -20, 30),
+                          "perspective": 25}, {"legend": True}):
+                image = oblique(order).render(mode="iso", iso=0, size=(120, 90), azimuth=25,
+                                              elevation=-40, roll=9, depth=True, **more)
+                y, x = numpy.mgrid[:90, :120] + 0.5
+                pixels = numpy.stack([x, y, numpy.asarray(image.depth)], -1)
+                points = image.pixel_to_world(pixels)
+                self.assertEqual(points.shape, (90, 120, 3))
+                seen = numpy.isfinite(pixels[..., 2])
+                self.assertTrue((numpy.isfinite(points).all(-1) == seen).all())
+                self.assertGreater(seen.sum(), 900)
+                away = numpy.linalg.norm(points[seen] - MIDDLE, axis=-1)
+                self.assertLess(abs(away - RADIUS).max(), 0.2)
+                self.assertLess(abs(image.world_to_pixel(points[seen]) - pixels[seen]).max(), 1e-6)
+
+    def test_the_target_is_in_the_middle(self):
+        image = oblique().render(size=(120, 90), target=(12, -19, 31), view="iso",
+                                 fit="volume")
+        self.assertTrue(numpy.allclose(image.world_to_pixel((12, -19, 31)), (60, 45, 0)))
+
+    def test_voxels_of_a_slice_are_its_pixels(self):
+        volume = sg.Volume(numpy.zeros((5, 30, 40), "u1"), spacing=0.5)
+        image = volume.slice("z", 2)
+        self.assertTrue(numpy.allclose(image.world_to_pixel([[0, 0, 1], [6, 10, 1]]),
+                                       [[0.5, 29.5, 0], [12.5, 9.5, 0]]))
+
+    def test_what_knows_no_world_says_so(self):
+        volume = oblique()
+        image = volume.render(mode="iso", iso=0, depth=True, size=40)
+        image.save("a.png")
+        for each in (image.depth, sg.Image.load("a.png"), volume.slice_ortho()):
+            with self.assertRaisesRegex(ValueError, "ask one of Volume.render"):
+                each.world_to_pixel((1, 2, 3))
+        for wrong in (3, (1, 2), "abc", [[1, 2, 3, 4]], [[1, 2], [3]]):
+            with self.assertRaisesRegex(ValueError, "pixels: give three numbers"):
+                image.pixel_to_world(wrong)

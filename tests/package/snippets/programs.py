@@ -42,8 +42,11 @@ def c(snippet, folder):
         return call("mpicc program.c -o program $(pkg-config --cflags --libs "
                     "snowglass-mpi) && rm -f u_*.png && mpirun -n 1 ./program && "
                     "[ -s u_0007.png ]", folder)
-    if "snow_frame_render_bytes" in snippet.text:
-        (folder / "program.c").write_text(framed("loop.c", snippet.text))
+    alone = {"snow_frame_render_bytes": "loop.c",
+             "snow_view_pixel_to_world": "picking.c"}
+    frame = next((alone[name] for name in alone if name in snippet.text), None)
+    if frame:
+        (folder / "program.c").write_text(framed(frame, snippet.text))
         return call("cc -std=c11 -Wall -Werror -Wno-misleading-indentation program.c "
                     "-o program $(pkg-config --cflags --libs snowglass) && ./program",
                     folder)
