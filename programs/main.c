@@ -6,7 +6,7 @@
  * and 130 (options.h). */
 #include "commands/commands.h"
 #include "commands/first.h"
-#include "movie/series.h"
+#include "series/series.h"
 #include "options/config.h"
 #include "picture/default_name.h"
 #include "run/interrupt.h"

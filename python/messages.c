@@ -105,7 +105,8 @@ PyObject *message_text(const char *message) {
         size_t length = from == message || strchr(" (", from[-1])
                             ? read_option(from, name)
                             : 0;
-        if (!length && strncmp(from, overwriting, sizeof overwriting - 1) == 0) {
+        if (!length &&
+            strncmp(from, overwriting, sizeof overwriting - 1) == 0) {
             to += sprintf(to, "give overwrite=True");
             from += sizeof overwriting - 1;
             continue;
@@ -115,8 +116,10 @@ PyObject *message_text(const char *message) {
             continue;
         }
         from += length;
-        /* a list behind it explains its name */
-        to += sprintf(to, strncmp(from, " (", 2) == 0 ? "%s" : "%s=", name);
+        /* a list or a sentence behind it explains its name */
+        to += sprintf(
+            to, strncmp(from, " (", 2) == 0 || *from == ':' ? "%s" : "%s=",
+            name);
         from += is_value(from, begins);
         if (is_tuple(name))
             from += write_tuple(from, &to);

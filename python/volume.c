@@ -1,6 +1,8 @@
 /* volume.c - volumes of files and over arrays, and their voxels as a buffer. */
 #include "core.h"
 
+#include "series/moment.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -440,6 +442,69 @@ static PyObject *volume_inspect(PyObject *module, PyObject *args) {
     return out;
 }
 
+/* The steps of a file. */
+typedef struct steps {
+    snow_context *context;
+    const char *path;
+    snow_volume_options options;
+} steps;
+
+/* A moment_step_fn. */
+static snow_status read_step(void *user, int64_t step, snow_volume_info *out) {
+    steps *s = user;
+    snow_volume_info_init(out);
+    s->options.time = step;
+    return snow_volume_inspect(s->context, s->path, &s->options, out);
+}
+
+/* Whether a text is a time is known by the caller. */
+static snow_status find_moment(steps *s, const moment *wanted, int64_t *step,
+                               snow_volume_info *at) {
+    snow_status status = read_step(s, 0, at);
+    if (!status)
+        status =
+            moment_find(s->context, wanted, at->times, read_step, s, step, at);
+    return status;
+}
+
+/* find_step(path, fields, time): the step of a file that is nearest to a time
+ * -> (step, the time that it has where that is another one, or None), or None
+ * where the text is no time. */
+static PyObject *volume_find_step(PyObject *module, PyObject *args) {
+    PyObject *given;
+    const char *text;
+    steps s;
+    moment wanted;
+    snow_volume_info at;
+    int64_t step = 0;
+    snow_status status;
+    char other[128] = "";
+    (void)module;
+    snow_volume_options_init(&s.options);
+    if (!PyArg_ParseTuple(args, "yOs", &s.path, &given, &text) ||
+        !record_fill_options(given, &s.options))
+        return NULL;
+    if (!moment_read(text, &wanted))
+        return Py_NewRef(Py_None);
+    s.options.each_time = true;
+    context_object *c = context_new();
+    if (!c || !context_enter(c, Py_None)) {
+        Py_XDECREF((PyObject *)c);
+        return NULL;
+    }
+    s.context = c->context;
+    CALL(c, status, find_moment(&s, &wanted, &step, &at));
+    const bool quiet =
+        PyList_SetSlice(c->warnings, 0, PY_SSIZE_T_MAX, NULL) == 0;
+    const bool fine = context_leave(c, status) && quiet;
+    Py_DECREF((PyObject *)c);
+    if (!fine)
+        return NULL;
+    if (!moment_is_at(&wanted, &at))
+        (void)snow_time_text(&at, NULL, other, sizeof other);
+    return Py_BuildValue("(Lz)", (long long)step, *other ? other : NULL);
+}
+
 static PyObject *volume_statistics(PyObject *self, PyObject *progress) {
     volume_object *o = (volume_object *)self;
     snow_volume_statistics s;
@@ -623,6 +688,7 @@ static PyGetSetDef volume_values[] = {
     {NULL, NULL, NULL, NULL, NULL}};
 PyMethodDef volume_functions[] = {
     METHOD("open", volume_open, METH_VARARGS, "a volume of a file"),
+    METHOD("find_step", volume_find_step, METH_VARARGS, "by its time"),
     METHOD("inspect", volume_inspect, METH_VARARGS, "what a file says"),
     METHOD("wrap", volume_wrap, METH_VARARGS, "a volume over an array"),
     METHOD("masked", volume_masked, METH_VARARGS, "a volume within a mask"),

@@ -19,7 +19,7 @@
 
 #include "commands/commands.h"
 #include "commands/first.h"
-#include "movie/series.h"
+#include "series/series.h"
 #include "run/log.h"
 
 #include <errno.h>

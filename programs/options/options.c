@@ -53,7 +53,7 @@ void options_init(options *out) {
         .timeout = 300,
         .frames = 120,
         .fps = recipe.fps,
-        .moment = NAN,
+        .moment = {.value = NAN},
     };
 }
 

@@ -8,6 +8,7 @@
 
 #include "options/channels.h"
 #include "options/option_values.h"
+#include "series/moment.h"
 
 #include <snowglass/look_file.h>
 #include <snowglass/snowglass.h>
@@ -110,9 +111,7 @@ typedef struct options {
     int64_t time;          /* -1: the last */
     int64_t time_end;      /* of a range: one past its last; INT64_MAX: all */
     bool time_range;       /* `time` is the first of several */
-    double moment;         /* physical time of the step; NaN: not given */
-    char moment_unit[16];  /* "" or as s, ms, h */
-    const char *date;      /* in place of both; NULL: not given */
+    moment moment;         /* physical time of the step */
     char *input[1];        /* the operand, where it was a pattern of files */
     int64_t channel;       /* the first of the list, or the only one */
     channel_list channels; /* none: all that the file shows, or the first */

@@ -38,33 +38,17 @@ static bool read_bound(const char *text, size_t length, int64_t empty,
     return value_integer(word, out);
 }
 
-/* "0.3", "0.3s", "6 h": a number, and a unit or a point in it. */
-static bool read_moment(const char *text, options *out) {
-    char *end;
-    double value = strtod(text, &end);
-    bool point = memchr(text, '.', (size_t)(end - text)) != NULL;
-    end += strspn(end, " ");
-    size_t letters = strspn(end, "abcdefghijklmnopqrstuvwxyz");
-    if (end == text || !isfinite(value) || end[letters] ||
-        letters >= sizeof out->moment_unit || (!letters && !point))
-        return false;
-    out->moment = value;
-    memcpy(out->moment_unit, end, letters + 1);
-    return true;
-}
-
 bool read_time(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
     options *out = (options *)(void *)((char *)field - row->field);
     int64_t value = 0;
-    int year, month, day;
-    const bool dated = sscanf(text, "%8d-%2d-%2d", &year, &month, &day) == 3;
-    const char *colon = dated ? NULL : strchr(text, ':');
-    out->date = dated ? text : NULL;
+    moment given;
+    const bool timed = moment_read(text, &given);
+    const char *colon = timed ? NULL : strchr(text, ':');
+    out->moment = given;
     out->time = 0;
     out->time_range = colon != NULL;
-    out->moment = dated ? 0 : NAN;
-    if (dated)
+    if (timed)
         return true;
     if (colon ? read_bound(text, (size_t)(colon - text), 0, &out->time) &&
                     read_bound(colon + 1, strlen(colon + 1), INT64_MAX,
@@ -77,8 +61,6 @@ bool read_time(const option_row *row, const char *text, void *field,
         out->time = -1;
         return true;
     }
-    if (!colon && read_moment(text, out))
-        return true;
     return parse_refuse(wrong,
                         "is not a time step; give its number, last, a range "
                         "such as 2:8, or a time such as 0.3s or 2005-08-28");

@@ -49,6 +49,9 @@ def check_options(options: Mapping[str, Any]) -> None:
     for name in options:
         if name in OPTIONS:
             continue
+        if name == "time":
+            raise TypeError("time counts for files only: choose the step of the array, as "
+                            "array[0], or array.sel(time=...) of xarray")
         if name in _recipes.DATA:
             raise TypeError(f"{name} counts for files only: save() the array as "
                             f".nrrd and open that with it")

@@ -7,7 +7,7 @@ import math
 from dataclasses import replace
 from typing import Any, Callable, Mapping, Optional, Sequence
 
-from . import _colormaps, _first, _recipes, _snowglass
+from . import _colormaps, _first, _recipes, _snowglass, _times
 from ._images import Image
 from ._looks import Look, is_ranged, look_of, shows_window
 from ._volumes import Volume
@@ -67,6 +67,8 @@ def cropped(volume: Volume, crop: Sequence[Sequence[int]]) -> Volume:
 def part(volume: Volume, data: Keys) -> Volume:
     """What of a volume a recipe draws."""
     data = {name: value for name, value in data.items() if value is not None}
+    if "time" in data:
+        data["time"] = _times.plain(data["time"])
     known = volume._source or {}
     strange = [name for name in data if name not in (*DATA, "clip") and
                _recipes._plain(known.get(name)) != _recipes._plain(data[name])]

@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING, Any, Callable, Literal, Mapping, Sequence,    
 Path = str | os.PathLike[str]
 Progress = Callable[[str, float], Any] | bool
 if TYPE_CHECKING:
+    import datetime
+    from numpy import datetime64
     from numpy.typing import NDArray
+    Time = int | str | datetime.date | datetime64
     Numbers = Sequence[float] | NDArray[Any]
     Points = Sequence[Numbers] | NDArray[Any]
 
@@ -86,7 +89,7 @@ class Data(TypedDict, total=False):
     spacing: float | Numbers | None
     endian: Literal["little", "big"] | None
     offset: int | None
-    time: int | None
+    time: Time | None
     dataset: str | None
     channel: Any | None
     component: str | int | None

@@ -216,10 +216,6 @@ def split(options: Mapping[str, Any]) -> tuple[
     if "axes" in given:
         data["axes"] = given.pop("axes")
     colors = take_look(given)
-    if isinstance(data.get("time"), str):
-        raise ValueError(f"a recipe of steps by a text (time {data['time']}) cannot "
-                         f"be drawn here; use the command line, or give one "
-                         f"number")
     if "tf" in given:
         raise ValueError("a recipe with a file of a look (tf) cannot be drawn "
                          "here; use the command line")

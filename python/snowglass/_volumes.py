@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Iterator, Literal, Mapping, Optional, \
     Sequence, TypeVar, Union, Unpack
 
 from . import _arrays, _channels, _checks, _colormaps, _first, _movies, _overlays, \
-    _recipes, _snowglass
+    _recipes, _snowglass, _times
 from ._images import Color, Image, Path
 from ._looks import Look, colors_are_open, is_ranged, look_of, shows_window
 from ._options import DEFAULTS, Data, Movie, Picture, Shot, Source, Whole
@@ -54,7 +54,9 @@ class Volume(_snowglass.Volume):
                 array that changes between pictures.
 
     For files: memory (the most bytes that the library may hold), dims, type ("uint8", "int16", ...), endian, offset (raw data),
-    time, channel (below), component ("x", "magnitude", a number from 0, or names, "u,v,w", whose magnitude is taken), crop
+    time (the number of a step, from 0, or from -1 at the end; or its time, as a text, "0.3s" or
+    "2005-08-28T06:00", a datetime or a numpy.datetime64, for the step that is nearest, with a
+    warning where it has another time), channel (below), component ("x", "magnitude", a number from 0, or names, "u,v,w", whose magnitude is taken), crop
     ((x0, x1), (y0, y1), (z0, z1)), dataset, series, allow_gaps (a DICOM folder,
     an OME-TIFF or a stack of ImageJ in which slices are missing is opened), suv (unit of PET in DICOM: "bw", "lbm",
     "bsa", or "none", as stored), levels (of refinement that are read,
@@ -135,6 +137,8 @@ class Volume(_snowglass.Volume):
                     if name in ("mask", "label_table") else str(fields[name])
         if "type" in fields and fields["type"] is not None:
             fields["type"] = str(fields["type"])
+        if fields.get("time") is not None:
+            fields["time"] = _times.step(fields["time"], os.fspath(path), fields)
         picks, numbers = _channels.picked(path, fields)
         if fields.get("channel") is None:  # told when a picture is made
             fields["each_channel"] = True

@@ -16,7 +16,7 @@ TYPES = {
     "light": f"str | {NUMBERS}", "material": NUMBERS, "legend": "bool | str",
     "measure": "str",
     "size": "int | Numbers", "dims": NUMBERS,
-    "spacing": f"float | {NUMBERS}", "time": "int", "component": "str | int",
+    "spacing": f"float | {NUMBERS}", "time": "Time", "component": "str | int",
     "channels": "Any", "crop": POINTS,
     "labels": "str | int", "clip": POINTS, "z_scale": "float | str",
 }
@@ -48,7 +48,10 @@ from typing import TYPE_CHECKING, Any, Callable, Literal, Mapping, Sequence, \
 Path = str | os.PathLike[str]
 Progress = Callable[[str, float], Any] | bool
 if TYPE_CHECKING:
+    import datetime
+    from numpy import datetime64
     from numpy.typing import NDArray
+    Time = int | str | datetime.date | datetime64
     Numbers = Sequence[float] | NDArray[Any]
     Points = Sequence[Numbers] | NDArray[Any]
 '''

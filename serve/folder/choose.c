@@ -5,7 +5,7 @@
 #include "commands/info_list.h"
 #include "folder/inside.h"
 #include "folder/own.h"
-#include "movie/series.h"
+#include "series/series.h"
 #include "options/config.h"
 #include "recipe_file.h"
 #include "run/log.h"

@@ -295,8 +295,9 @@ class Stumbles(InFolder):
         for call, answer in (
                 (lambda: volume.render(shade="flat"), "take one of phong, none$"),
                 (lambda: sg.Look(scale="symlog:-1"), "^scale: give 'linear', 'log', .*above 0"),
-                (lambda: sg.render(ball(), time="2:4"),
-                 r"\(time 2:4\) cannot be drawn here; use the command line"),
+                (lambda: sg.Volume("a.nc", time="2:4"),
+                 "^time: give the number of a step, .* not '2:4'; snowglass.series has"),
+                (lambda: sg.Volume("a.nc", time="x"), "^time: give .* not 'x'$"),
                 (lambda: sg.Volume("a.raw", type="int9"),
                  "type: .*take one of int8, .*, float64$"),
                 (lambda: sg.Volume("a.raw", endian="x"), "take one of little, big$"),

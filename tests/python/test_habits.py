@@ -11,7 +11,7 @@ import warnings
 import numpy
 
 import snowglass as sg
-from beside import InFolder, plain
+from beside import InFolder, needs, plain
 
 try:
     import matplotlib
@@ -333,6 +333,60 @@ class Progress(InFolder):
                          numpy.ones((24, 24, 24)), progress=progress)):
             work(progress=lambda *each: said.append(each))
         self.assertTrue(all(0 <= part <= 1 for _, part in said))
+
+    @needs("netCDF4")
+    def test_a_step_is_found_by_its_time(self):
+        """As people of xarray write one, and where no step is, beside cftime."""
+        import datetime
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of NumPy's versions
+            import cftime
+            import netCDF4
+        since, stamp = "hours since 2005-08-28", numpy.datetime64
+        with netCDF4.Dataset("a.nc", "w") as file:
+            for name, count in (("time", 300), ("z", 5), ("y", 6), ("x", 7)):
+                file.createDimension(name, count)
+                file.createVariable(name, "f8", (name,))[:] = numpy.arange(count)
+                file[name].units = since if name == "time" else "km"
+            file.createVariable("q", "f4", ("time", "z", "y", "x"))[:] = \
+                numpy.random.default_rng(1).normal(size=(300, 5, 6, 7))
+        when = datetime.datetime(2005, 9, 1, 12)
+        step = round(cftime.date2num(when, since))
+        east = datetime.timezone(datetime.timedelta(hours=5, minutes=30))
+        for time in (step, step - 300, str(step), f"{step}h", "2005-09-01T12:00",
+                     "2005-09-01 12:00:00", when, stamp("2005-09-01T12"),
+                     stamp("2005-09-01T12:00:00.000000000"), numpy.array(when, "M8[us]"),
+                     when.replace(hour=17, minute=30, tzinfo=east), cftime.datetime(
+                         2005, 9, 1, 12), numpy.int64(step)):
+            with self.subTest(time=time), warnings.catch_warnings():
+                warnings.simplefilter("error")
+                volume = sg.Volume("a.nc", time=time)
+                self.assertEqual(volume.info["time"], step)
+                self.assertEqual(volume.render(size=9).recipe["time"] % 300, step)
+        self.assertEqual(sg.Volume("a.nc", time="last").info["time"], 299)
+        self.assertEqual([step.info["time"] for step in sg.series("a.nc", time="7h")], [7])
+        with self.assertWarnsRegex(sg.SnowglassWarning, "step 14 is the nearest to "
+                                   "time='2005-08-28T14:20:00', at 2005-08-28 14:00$"):
+            sg.Volume("a.nc", time=datetime.datetime(2005, 8, 28, 14, 20))
+        with self.assertWarnsRegex(sg.SnowglassWarning, "step 299 is the nearest"):
+            sg.Volume("a.nc", time=stamp("2035"))
+        wanted = sg.Volume("a.nc", time=36).render(size=24)
+        for made in (sg.render(sg.Volume("a.nc", time=0), time=stamp("2005-08-29T12"), size=24),
+                     sg.render("a.nc", time="36h", size=24),
+                     sg.render(**{**wanted.recipe, "time": "2005-08-29 12:00"})):
+            self.same_picture(made, wanted)
+        for wrong, kind, answer in (
+                ("2005-02-30", ValueError, "^time: 2005-02-30 is not a date of the input, .*"
+                 "hours since 2005-08-28"), ("3kg", ValueError, "^time: the unit \"kg\" cannot"),
+                (0.5, TypeError, "^time: give the number of a step, .*, not 0.5$"),
+                (stamp("NaT"), TypeError, "^time: give "), (300, ValueError, "no time step 300")):
+            with self.assertRaisesRegex(kind, answer):
+                sg.Volume("a.nc", time=wrong)
+        with self.assertRaisesRegex(ValueError, "^time: the input has no physical times; give"):
+            sg.Volume("phantom:head", time=when)
+        with self.assertRaisesRegex(TypeError, r"array.sel\(time=...\) of xarray"):
+            sg.render(RAMP, time=when)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,9 @@ import snowglass as sg
 volume = sg.Volume("head.nii.gz", crop=((0, 9), (0, 9), (0, 9)), channel="GFP")
 array = sg.Volume(numpy.zeros((4, 5, 6)), spacing=(1, 2, 3), copy=True)
 sg.Volume("head.nii.gz", croop=((0, 9), (0, 9), (0, 9)))  # wrong
-sg.Volume("head.nii.gz", time="last")  # wrong
+sg.Volume("head.nii.gz", time="last")
+sg.Volume("head.nii.gz", time=numpy.datetime64("2005-08-28"))
+sg.Volume("head.nii.gz", time=0.5)  # wrong
 sg.open("head.nii.gz", dataset="rho", progress=True)
 sg.open("head.nii.gz", data_set="rho")  # wrong
 
