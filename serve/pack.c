@@ -61,16 +61,6 @@ static double seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static outgoing *outgoing_of(const frame_head *head, const void *bytes,
-                             size_t length) {
-    outgoing *made = outgoing_new(FRAME_HEAD_BYTES + length);
-    if (!made)
-        return NULL;
-    frame_head_write(head, made->bytes);
-    memcpy(made->bytes + FRAME_HEAD_BYTES, bytes, length);
-    return made;
-}
-
 /* --- JPEG and WebP ----------------------------------------------------------
  */
 
@@ -78,7 +68,12 @@ static outgoing *finish(frame_head *head, int kind, double begin,
                         const void *bytes, size_t length) {
     head->kind = kind;
     head->pack_us = (uint32_t)(1e6 * (seconds() - begin));
-    return outgoing_of(head, bytes, length);
+    outgoing *made = outgoing_new(FRAME_HEAD_BYTES + length);
+    if (!made)
+        return NULL;
+    frame_head_write(head, made->bytes);
+    memcpy(made->bytes + FRAME_HEAD_BYTES, bytes, length);
+    return made;
 }
 
 /* Grey takes less time, here and in the page, and a fifth fewer bytes; fine
@@ -274,10 +269,6 @@ static void pack(packer *p, const picture *made) {
             MESSAGE_THIN_PICTURE);
 }
 
-static double pixels_of(const snow_image *image) {
-    return (double)snow_image_width(image) * snow_image_height(image);
-}
-
 static void *run(void *user) {
     lane *own = user;
     packer *p = own->of;
@@ -295,7 +286,9 @@ static void *run(void *user) {
         pack(p, next);
         pthread_mutex_lock(&p->lock);
         if (next->level == 0)
-            p->pixel_seconds = (seconds() - begin) / pixels_of(next->image);
+            p->pixel_seconds = (seconds() - begin) /
+                               snow_image_width(next->image) /
+                               snow_image_height(next->image);
         own->packing = NULL;
         next->next = p->done;
         p->done = next;

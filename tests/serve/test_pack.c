@@ -11,11 +11,12 @@
 
 #define SIDE 2500 /* whose noise takes much longer to pack than a draft */
 
-/* The state of the pages, of which the packer only asks this. */
-static atomic_uint newest;
+/* The state of the pages, of which the packer only asks this, amid a PNG. */
+static atomic_uint newest, asked;
 
 bool state_is_stale(const viewer_state *s, uint32_t revision) {
     (void)s;
+    asked++;
     return revision != newest;
 }
 
@@ -75,7 +76,9 @@ static void a_draft_does_not_wait_for_a_picture_at_rest(void **state) {
     outbox_set_audience(box, 1, 0, 75);
     newest = 1;
     free_all(packer_put(p, noise(context, SIDE, 2, 1)));
-    nanosleep(&moment, NULL);
+    while (!asked && !woken)
+        nanosleep(&moment, NULL);
+    assert_int_equal(woken, 0); /* it is being packed */
     picture *draft = noise(context, 16, 0, 2);
     newest = 2;
     free_all(packer_put(p, draft));
@@ -86,6 +89,7 @@ static void a_draft_does_not_wait_for_a_picture_at_rest(void **state) {
     free_all(packer_wait(p));
     take_levels(box, levels);
     assert_string_equal(levels, "");
+    assert_int_equal(woken, 1);
     free_all(packer_put(p, noise(context, 16, 2, 2)));
     free_all(packer_wait(p));
     take_levels(box, levels);
