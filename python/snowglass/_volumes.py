@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Iterator, Literal, Mapping, Optional, \
 
 from . import _arrays, _channels, _checks, _colormaps, _first, _movies, _overlays, \
     _recipes, _snowglass, _times
-from ._images import Color, Image, Path
+from ._images import Color, Image, Path, color_of
 from ._looks import Look, colors_are_open, is_ranged, look_of, shows_window
 from ._options import DEFAULTS, Data, Movie, Picture, Shot, Source, Whole
 from ._progress import Progress, progress_of
@@ -1181,8 +1181,9 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
     """A picture of a file, an array or a Volume; `open` holds options of Volume,
     which may be given beside it, but for `unit`; the others are those of Volume.render, or keys of a recipe: what
     `Image.recipe` gives and the command line saves, `render(**recipe)` draws,
-    with the same bits.  A title is drawn when the picture is saved.  What such a
-    file says of its output is left out, annotate and box with a warning.  Of a
+    with the same bits.  A title is drawn when the picture is saved, on its
+    background if one is given.  What such a file says else of its output is left out,
+    annotate and box with a warning.  Of a
     Volume clip, crop, time, channel, component and labels are taken, as its
     viewer has them: a crop counts the Volume's voxels, and a file is read again.
     With an axis it is a recipe of a slice, which Volume.slice draws."""
@@ -1192,6 +1193,9 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
         if keys.get(name):
             warn(f"{name} is not drawn by Python: 'snowglass render' draws it")
     title = _checks.text("title", keys.get("title"), "a line of text")
+    ground: Any = keys.get("background", "auto")
+    chosen = not isinstance(ground, str) or ground != "auto"
+    color = color_of(ground) if chosen else None
     data, colors, options = _recipes.split(keys)
     sliced = "axis" in options or "at" in options
     if sliced:
@@ -1217,6 +1221,8 @@ def render(source: Any = None, look: Union[Look, str, None] = None, *,
             look, **_recipes.with_lengths(options, volume.info["unit"]))
     if title:
         image._annotations = {**image._annotations, "title": title}
+    if chosen:
+        image._background = color
     return image
 
 

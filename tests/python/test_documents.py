@@ -38,13 +38,14 @@ class Documents(InFolder):
         text = DOCUMENT.with_name("questions.md").read_text(encoding="utf-8")
         block, = re.findall(r"```python\n(.*?)```", text, re.S)
         exec(compile(block, "questions.md", "exec"), {})
-        whole, figure = (numpy.asarray(PIL.Image.open(name)) for name in ("head.png", "figure.png"))
+        with PIL.Image.open("head.png") as one, PIL.Image.open("figure.png") as other:
+            whole, figure, densities = numpy.asarray(one), numpy.asarray(other), other.info["dpi"]
         seen = whole[..., -1] > 0
         rows, columns = (numpy.flatnonzero(seen.any(axis)) for axis in (1, 0))
         self.assertLess(max(figure.shape[:2]), len(whole))
         numpy.testing.assert_array_equal(figure, whole[rows[0]:rows[-1] + 1,
                                                        columns[0]:columns[-1] + 1])
-        for density in PIL.Image.open("figure.png").info["dpi"]:
+        for density in densities:
             self.assertAlmostEqual(density, 300, delta=0.1)
 
     def run_block(self, block, known):

@@ -1,6 +1,7 @@
 """What users of matplotlib, PyVista and the command line are used to."""
 import copy
 import gc
+import json
 import os
 import pickle
 import subprocess
@@ -288,6 +289,22 @@ class Faults(InFolder):
                 drawn = here.read()
                 self.assertEqual(drawn, saved.read())
                 self.assertNotEqual(drawn, without.read())
+
+    def test_the_background_of_a_recipe_is_that_of_its_file(self):
+        for ground in ("white", "none", "#102030"):
+            self.tool("render", "phantom:head", "--dims", "32x32x32", "-s", "64",
+                      "--background", ground, "--save-config", "ground.json", "-o", "tool.png")
+            with open("ground.json", encoding="utf-8") as file:
+                recipe = json.load(file)
+            sg.render(**recipe).save("here.png")
+            with open("here.png", "rb") as here, open("tool.png", "rb") as there:
+                self.assertEqual(here.read(), there.read())
+        dark = sg.render(head(), size=24, background="white").to_rgb()
+        self.assertEqual(dark[0, 0].tolist(), [255] * 3)
+        clear = sg.render(head(), size=24, background=None)
+        self.assertEqual(clear.png(), sg.render(head(), size=24).png(None))
+        with self.assertRaisesRegex(ValueError, "'x' is no colour"):
+            sg.render(head(), size=24, background="x")
 
     def test_what_help_says_first(self):
         self.assertIn("wraps an array", sg.Volume.__init__.__doc__)
