@@ -3,8 +3,10 @@
  * A call is a batch of items. The caller stores the work, wakes as many
  * sleepers as it wants, and processes items like the others; a thread that
  * finds no more items leaves the batch, and the caller waits for the last one.
- * No thread spins: on a loaded machine a spinning thread takes the time of the
- * one that it waits for.
+ *
+ * The stages of a picture follow one another within microseconds, and to wake a
+ * sleeper takes longer.  So whoever waits looks for a change for a moment
+ * before it sleeps, and yields its processor to other threads meanwhile.
  *
  * A batch may stay open behind the calls (snow_parallel_begin). Threads process
  * its items one by one, while no call has items. */
@@ -12,6 +14,7 @@
 
 #include "base/affinity.h"
 
+#include <sched.h>
 #include <signal.h>
 #include <string.h>
 #include <time.h>
@@ -34,6 +37,7 @@ struct snow_pool {
     pid_t owner; /* the process that owns the threads */
     pthread_mutex_t lock;
     pthread_cond_t wake, rest;
+    atomic_int begun;     /* batches, to see that there is another */
     pool_thread *threads; /* worker n is threads[n - 1] */
     int count, capacity;
     bool quit;
@@ -94,6 +98,20 @@ static void work_along(pool_thread *self, snow_batch *batch) {
         pthread_cond_signal(&pool->rest);
 }
 
+#define LINGER_SECONDS 50e-6
+
+/* Waits for a change of a value, but not long enough to be worth sleeping
+ * (under the lock, which is left meanwhile); false: there was none. */
+static bool linger(snow_pool *pool, const atomic_int *value) {
+    const int before = atomic_load(value);
+    const double until = snow_seconds() + LINGER_SECONDS;
+    pthread_mutex_unlock(&pool->lock);
+    while (atomic_load(value) == before && snow_seconds() < until)
+        sched_yield();
+    pthread_mutex_lock(&pool->lock);
+    return atomic_load(value) != before;
+}
+
 /* The life of a thread: asleep until a batch needs it. */
 static void *run_thread(void *argument) {
     pool_thread *self = argument;
@@ -105,6 +123,8 @@ static void *run_thread(void *argument) {
             work_along(self, batch);
             continue;
         }
+        if (linger(pool, &pool->begun))
+            continue;
         self->asleep = true;
         pthread_cond_wait(&pool->wake, &pool->lock);
         self->asleep = false;
@@ -197,6 +217,7 @@ static void fill_batch(snow_batch *batch, snow_monitor *monitor, int threads,
 /* Wakes the threads that the batch needs (under the lock). */
 static void wake_threads(snow_pool *pool, const snow_batch *batch) {
     bool affinity = snow_affinity_begin(&pool->affinity);
+    atomic_fetch_add(&pool->begun, 1);
     for (int n = 0; affinity && n < pool->count && n < batch->wanted - 1; n++) {
         pool_thread *thread = &pool->threads[n];
         if (thread->asleep &&
@@ -233,6 +254,8 @@ static void rest_and_ask(snow_pool *pool, snow_monitor *monitor) {
 /* Waits until the pool's threads have finished their items (under the lock). */
 static void close_batch(snow_pool *pool, snow_batch *batch) {
     while (batch->busy) {
+        if (linger(pool, &batch->busy))
+            continue;
         if (batch->monitor && batch->monitor->stop)
             rest_and_ask(pool, batch->monitor);
         else
@@ -317,6 +340,7 @@ void snow_pool_free(snow_context *context) {
         return;
     pthread_mutex_lock(&pool->lock);
     pool->quit = true;
+    atomic_fetch_add(&pool->begun, 1);
     pthread_cond_broadcast(&pool->wake);
     pthread_mutex_unlock(&pool->lock);
     for (int n = 0; n < pool->count; n++)

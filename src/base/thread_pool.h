@@ -34,7 +34,7 @@ typedef struct snow_batch {
     void *job;
     int64_t items;
     int wanted;            /* workers, the caller included */
-    int busy;              /* of the pool's threads */
+    atomic_int busy;       /* of the pool's threads */
     bool skips;            /* the items that are left after a stop */
     snow_monitor *monitor; /* that it is for, or NULL */
     atomic_int_fast64_t next;
