@@ -474,9 +474,13 @@ function greet(touched) {
     if (!store.info || !greeting)
         return;
     greeting = false;
-    const link = given.get('recipe');
+    const link = given.get('recipe'), {slices: left, file: of} = history.state ?? {};
+    if (link && engine.token) // to load the page again keeps what was done since
+        history.replaceState(null, '', `#${new URLSearchParams({token: engine.token})}`);
     if (link && !folder.lacks) // it is of what the link names
         openLink(link);
+    else if (left && of === store.info.file) // the page was loaded again
+        store.apply(sifted({slices: left}, store.info).good);
     else if (touched === false && !store.info.live)
         hints.show(0); // nobody has used this viewer yet
 }
@@ -548,6 +552,7 @@ new ResizeObserver(() => {
 engine.open();
 document.addEventListener('pointerdown', () => store.part(), true);
 window.addEventListener('beforeunload', event => {
+    history.replaceState({slices: store.keys.slices, file: store.info?.file}, ''); // of this page alone: nobody else has them
     if (movies.comes) // without any page it would not be written
         event.preventDefault();
 });

@@ -355,6 +355,16 @@ export async function restarted({check, keys, open, part, rest, folder}) {
     await page.waitForFunction(() => window.snowglass && !window.snowglass.old);
     await rest(page);
     check('and so is a link', await page.evaluate(() => window.snowglass.recipe.keys.mode) === 'mip');
+    await page.evaluate(() => window.snowglass.recipe.set({azimuth: 77}));
+    await page.getByRole('button', {name: /^2 x 2/}).click();
+    await rest(page);
+    await page.evaluate(() => { window.snowglass.old = true; });
+    await page.reload();
+    await page.waitForFunction(() => window.snowglass && !window.snowglass.old);
+    await rest(page);
+    const {azimuth, mode, slices} = await keys(page);
+    check('a page that is loaded again shows what was done since', azimuth === 77 && mode === 'mip' && slices?.layout === 'grid',
+        JSON.stringify([azimuth, mode, slices]));
     await page.context().close();
     await end(server);
     said.splice(0, said.length, ...said.filter(line => !/WebSocket connection to/.test(line)));

@@ -282,6 +282,10 @@ async function readable() {
         const page = await open({viewport: {width: 640, height: 360}, colorScheme}); // 1280 x 720 at 200 %
         const box = await page.locator('.picture').boundingBox();
         check('the picture of a magnified page is high', box.height > 200 && box.width > 300, JSON.stringify(box));
+        const wide = await page.evaluate(() => [...document.querySelectorAll('.top, .bottom')].filter(
+            bar => bar.scrollWidth > bar.clientWidth || [...bar.querySelectorAll('button, select')].some(
+                one => one.getBoundingClientRect().right > bar.getBoundingClientRect().right)).map(bar => bar.className));
+        check('all of its buttons are seen', wide.length === 0, wide.join());
         const spoken = await page.evaluate(() => [...document.querySelectorAll('button[aria-label]')].filter(one =>
             /[a-z]{2}/i.test(one.textContent) && !one.getAttribute('aria-label').toLowerCase().includes(
                 one.textContent.toLowerCase())).map(one => one.textContent));
