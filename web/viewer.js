@@ -268,8 +268,10 @@ function describe() {
  * @param {Keys} state
  * @param {string[]|null} volume of a folder */
 function linkTo({size, ...keys}, volume) {
-    const text = {token: engine.token, recipe: JSON.stringify(keys)};
-    return `${new URLSearchParams(volume ? {...text, volume: JSON.stringify(volume)} : text)}`;
+    const words = new URLSearchParams({token: engine.token, recipe: JSON.stringify(keys)});
+    if (volume)
+        words.set('volume', JSON.stringify(volume));
+    return `${words}`;
 }
 
 // --- recipes of files -----------------------------------------------------------------
