@@ -26,10 +26,25 @@ static bool is_value(const char *text, bool begins) {
                             (text[1] >= 'A' && text[1] <= 'Z'));
 }
 
+/* Whether the word behind it is its value. */
+static bool is_word(const char *name) {
+    return strcmp(name, "preset") == 0 || strcmp(name, "vertical") == 0;
+}
+
+/* Writes the word behind a blank as a text; returns what was read. */
+static size_t write_word(const char *from, char **to) {
+    const size_t length =
+        *from == ' ' ? strspn(from + 1, "abcdefghijklmnopqrstuvwxyz-") : 0;
+    if (!length || !strchr(" ,:;", from[length + 1]))
+        return 0;
+    *to += sprintf(*to, "'%.*s'", (int)length, from + 1);
+    return length + 1;
+}
+
 /* Whether numbers are given as a tuple. */
 static bool is_tuple(const char *name) {
-    static const char *const names[] = {"dims", "spacing", "crop",
-                                        "size", "range",   "window"};
+    static const char *const names[] = {"dims",  "spacing", "crop",    "size",
+                                        "range", "window",  "material"};
     size_t n = 0;
     while (n < sizeof names / sizeof *names && strcmp(names[n], name) != 0)
         n++;
@@ -118,9 +133,12 @@ PyObject *message_text(const char *message) {
         from += length;
         /* a list or a sentence behind it explains its name */
         to += sprintf(
-            to, strncmp(from, " (", 2) == 0 || *from == ':' ? "%s" : "%s=",
-            name);
-        from += is_value(from, begins);
+            to,
+            strncmp(from, " (", 2) == 0 || *from == ':' ? "%s" : "%s=", name);
+        if (strcmp(name, "allow_gaps") == 0)
+            to += sprintf(to, "True");
+        const size_t word = is_word(name) ? write_word(from, &to) : 0;
+        from += word ? word : is_value(from, begins);
         if (is_tuple(name))
             from += write_tuple(from, &to);
         else if (strcmp(name, "type") == 0)

@@ -341,8 +341,11 @@ const char *record_setting_name(size_t n) {
 }
 
 bool record_is_argument(const char *name) {
-    static const field others[] = {
-        {.name = "clip"}, {.name = "range"}, {.name = "size"}};
+    static const field others[] = {{.name = "clip"},
+                                   {.name = "range"},
+                                   {.name = "size"},
+                                   {.name = "material"},
+                                   {.name = "overlay_look"}};
     return HAS_NAME(option_fields, name) || HAS_NAME(settings_fields, name) ||
            HAS_NAME(view_fields, name) || HAS_NAME(look_fields, name) ||
            HAS_NAME(others, name);

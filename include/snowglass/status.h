@@ -6,7 +6,7 @@
  * an argument out of its range, NO_MEMORY where it makes something and there is
  * no room, and STOPPED where it takes long and the caller's functions
  * (context.h) ask for it. The message, one line, is in the context. Messages
- * name options as the tool does: --dims is the field `dims`.
+ * name options as the tool does: --z-scale is the field `z_scale`.
  *
  * Results leave through out-parameters. A failure does not change pointers,
  * records and single values; arrays and buffers that the caller provides

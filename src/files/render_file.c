@@ -42,8 +42,8 @@ static void note_others(const request *r) {
     const snow_volume_info *info = info_of(r);
     if (info->channels > 1 && !r->mix.count)
         snow_notify(r->context,
-                    "channel 0 of %lld (counted from 0) is used; --channel N "
-                    "selects another",
+                    "channel 0 of %lld (counted from 0) is used; "
+                    "snow_volume_open selects another",
                     (long long)info->channels);
     else if (r->mix.count && info->channels > SNOW_CHANNELS_MAX)
         snow_notify(r->context,

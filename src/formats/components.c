@@ -47,8 +47,8 @@ snow_status snow_component_check(snow_context *context, bool named,
                          text);
     if (text && options->channel)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "--component and --channel name the same; give one "
-                         "of them");
+                         "give either --component or --channel, which name the "
+                         "same");
     return SNOW_STATUS_OK;
 }
 

@@ -221,8 +221,8 @@ static snow_status open_both(opening *o, snow_volume_info *info,
         !snow_labels_pick(volume, o->labels, o->count) &&
         !is_cropped(&o->options))
         snow_notify(o->context,
-                    "--labels: no voxel has such a label; info lists those "
-                    "that there are");
+                    "--labels: no voxel has such a label; snowglass info "
+                    "lists those that there are");
     if (status == SNOW_STATUS_OK && !cut) {
         *out = volume;
         return SNOW_STATUS_OK;

@@ -219,16 +219,16 @@ static char state_of(const mpi_watchdog *watchdog, int rank) {
     return end && end[1] == ' ' ? end[2] : 0;
 }
 
+#define ALLOW_LONGER "allow a longer timeout (--timeout, snow_comm_set_timeout)"
+
 static const char *guess(char state) {
     if (state == 'T' || state == 't')
         return "it is stopped; let it continue (kill -CONT)";
     if (state == 'R')
-        return "it works or hangs; if it works, allow a longer --timeout";
+        return "it works or hangs; if it works, " ALLOW_LONGER;
     if (state == 'S' || state == 'D')
-        return "it sleeps, or waits for a disk; if that is slow, allow a "
-               "longer --timeout";
-    return "it is stopped, hangs or works; if it works, allow a longer "
-           "--timeout";
+        return "it sleeps, or waits for a disk; if that is slow, " ALLOW_LONGER;
+    return "it is stopped, hangs or works; if it works, " ALLOW_LONGER;
 }
 
 static bool is_stopped(const mpi_watchdog *watchdog, int rank) {

@@ -195,7 +195,8 @@ static snow_status check_rings(const trimming *t) {
                 t->held->context, SNOW_STATUS_BAD_USAGE,
                 "this view needs %lld voxels around what the look shows, but "
                 "only %lld were kept when the volume was opened for one look; "
-                "open it for this view, or without one_look",
+                "open it for this view, or without one_look "
+                "(snow_ranks_options)",
                 (long long)t->order->layers[i], (long long)t->left->ring[i]);
     return SNOW_STATUS_OK;
 }

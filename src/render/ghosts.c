@@ -314,8 +314,8 @@ static snow_status check_layers(snow_context *context,
             return snow_fail(
                 context, SNOW_STATUS_BAD_USAGE,
                 "this view needs %lld layers of ghost voxels along %c, but a "
-                "part of the volume has %lld; open the volume for this view, "
-                "or with more layers",
+                "part of the volume has %lld; make the parts for this view, or "
+                "with more layers",
                 (long long)layers[axis], names[axis], (long long)few);
     }
     return SNOW_STATUS_OK;

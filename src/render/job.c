@@ -53,7 +53,7 @@ static snow_status check_left_out(const snow_job *job) {
     return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
                      "the volume was opened for one look, without the voxels "
                      "of values %g to %g, which this picture needs; open it "
-                     "without one_look",
+                     "without one_look (snow_ranks_options)",
                      a < b ? a : b, a < b ? b : a);
 }
 
@@ -67,7 +67,8 @@ static snow_status check_raycast(const snow_job *job) {
         return snow_fail(
             job->context, SNOW_STATUS_NO_MEMORY,
             "%s: method raycast needs all voxels in memory, but they stay in "
-            "the file; allow more memory, give --crop, or take another method",
+            "the file; allow more memory, open a part by --crop, or take "
+            "another method",
             job->volume->path);
     if (!snow_job_whole(job))
         return snow_fail(

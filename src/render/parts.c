@@ -183,8 +183,8 @@ static snow_status fail_room(const snow_parts *parts) {
     return snow_fail(
         job->context, SNOW_STATUS_NO_MEMORY,
         "%s: slabs of %.1f MiB, with %lld slices of their neighbours, and "
-        "their encoding do not fit%s; allow more memory, give --crop or, where "
-        "a pixel is several voxels wide, a larger --size",
+        "their encoding do not fit%s; allow more memory, open a part by --crop "
+        "or, where a pixel is several voxels wide, draw a larger picture",
         job->volume->path,
         (double)snow_slab_bytes(job->volume, &parts->cut) / 0x1p20,
         (long long)(2 * parts->cut.ghosts), limit);

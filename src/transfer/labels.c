@@ -387,7 +387,7 @@ static const char *reason_of(const label_scan *s, const snow_look *look,
     if (asked || s->labelled)
         return s->labelled ? "of the file" : "labels";
     if (look->overlay)
-        return "few whole numbers; --overlay-look hot shows values";
+        return "few whole numbers; the look hot (--overlay-look) shows values";
     return is_few(s) ? "few whole numbers, in regions"
                      : "0 and one value; --preset linear shows values";
 }

@@ -439,7 +439,7 @@ static snow_status make_among(snow_comm *comm, const snow_volume *volume,
         status = snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
                            "the volume was opened for one look and lacks "
                            "voxels that another depends on; open it without "
-                           "one_look");
+                           "one_look (snow_ranks_options)");
     if (comm && status == SNOW_STATUS_OK && !volume->is_part)
         status = snow_volume_need_voxels(volume); /* all parts are alike */
     if (comm)

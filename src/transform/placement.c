@@ -150,7 +150,7 @@ static snow_status place_volume(snow_context *context,
         return SNOW_STATUS_OK;
     return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                      "voxels of %gx%gx%g cannot be shown at zoom %g: they are "
-                     "too flat or too large; give --spacing",
+                     "too flat or too large; give the volume another --spacing",
                      info->spacing[0], info->spacing[1], info->spacing[2],
                      view->zoom);
 }

@@ -289,7 +289,7 @@ snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
                          "the volume was opened for one look and lacks voxels "
                          "that a mask or clip planes may uncover; mask and "
                          "clip it when it is opened, or open it without "
-                         "one_look");
+                         "one_look (snow_ranks_options)");
     snow_mask_info(&info);
     SNOW_TRY(snow_volume_new(volume->context, &info, &made));
     made->is_part = volume->is_part;

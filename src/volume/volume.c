@@ -98,19 +98,19 @@ snow_status snow_volume_info_check(snow_context *context,
     if (!good || !snow_matrix_invert3(info->matrix, inverse))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "invalid spacing or directions of the axes: zero, not "
-                         "finite, or in one plane; correct them in the header");
+                         "finite, or in one plane; correct them");
     if (!is_measurable(info))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "its voxels are smaller than %g or lie farther than "
-                         "%g from the origin; correct spacing and origin in "
-                         "the header",
+                         "%g from the origin; correct spacing and origin",
                          1 / FARTHEST, FARTHEST);
     if (!isfinite(info->slope) || !isfinite(info->intercept) ||
         info->slope == 0)
-        return snow_fail(
-            context, SNOW_STATUS_BAD_INPUT,
-            "invalid slope %g and intercept %g; correct them in the header",
-            info->slope, info->intercept);
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "invalid slope %g and intercept %g; give finite "
+                         "numbers, and a slope "
+                         "other than 0",
+                         info->slope, info->intercept);
     return SNOW_STATUS_OK;
 }
 
@@ -200,7 +200,7 @@ snow_status snow_volume_need_voxels(const snow_volume *volume) {
         return SNOW_STATUS_OK;
     return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
                      "%s: the voxels stay in the file, but this call needs all "
-                     "of them; open the volume with snow_volume_open",
+                     "of them; open the volume in memory (snow_volume_open)",
                      volume->path);
 }
 

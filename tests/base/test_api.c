@@ -165,6 +165,11 @@ static void wrapped_voxels_take_a_spacing_or_three_rows(void **state) {
     info.matrix[3][3] = 2;
     assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
                      SNOW_STATUS_BAD_USAGE);
+    memset(info.matrix[2], 0, sizeof info.matrix[2]);
+    info.matrix[3][3] = 1;
+    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_null(strstr(snow_context_message(context), "header"));
     snow_context_free(context);
 }
 

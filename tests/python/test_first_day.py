@@ -176,7 +176,7 @@ class FirstPictures(InFolder):
         columns = sg.Volume("wrf.nc", dataset="T", vertical="height")
         self.assertFalse(numpy.isnan(numpy.asarray(flat)).any())
         self.assertTrue(numpy.isnan(numpy.asarray(columns)).any())
-        with self.assertRaisesRegex(ValueError, "vertical=depth"):
+        with self.assertRaisesRegex(ValueError, "vertical='depth': is no way"):
             sg.Volume("wrf.nc", dataset="T", vertical="depth")
 
     @needs("xarray", "netCDF4")
@@ -460,6 +460,14 @@ class Stumbles(InFolder):
             with self.assertRaisesRegex((ValueError, sg.Error), answer) as caught:
                 call()
             self.assertNotIn("--", str(caught.exception))
+        for said, answer in (
+                ("0 and one value; --preset linear shows values", "; preset='linear' shows values"),
+                ("hot (--overlay-look) shows", r"hot \(overlay_look=\) shows"),
+                ("--vertical height shows each", "^vertical='height' shows each"),
+                ("open it with --allow-gaps", "with allow_gaps=True$"),
+                ("open a part by --crop, or", "by crop=, or"),
+                ("--suv: the volume is", "^suv: the volume is")):
+            self.assertRegex(sg._snowglass.text(said), answer)
 
     def test_points_may_be_what_is_read_once(self):
         volume = sg.Volume(ball())

@@ -93,8 +93,8 @@ snow_status tf_read_vp(const tf_input *in, snow_look_file *tf) {
     TF_TRY(take_colors(in, tf, &at, end));
     tf->format = "slicer-vp";
     snow_context_warn(in->context,
-                      "%s: its light is ignored; give --material "
-                      "%g,%g,%g,%g to use it",
+                      "%s: its light is ignored; --material %g,%g,%g,%g "
+                      "(ambient, diffuse, specular, shininess) has it",
                       in->name, light[3], light[2], light[4], light[5]);
     return SNOW_STATUS_OK;
 }
