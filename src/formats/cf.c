@@ -158,7 +158,8 @@ static snow_uneven plan_grid(snow_context *context, const cf_axis axes[3],
         grid.moved[i] = axes[i].uneven ? axes[i].moved : NULL;
     }
     if (snow_uneven_any(&grid)) {
-        snow_uneven_plan(context, &grid, info);
+        const char *const units[3] = {axes[0].unit, axes[1].unit, axes[2].unit};
+        snow_uneven_plan(context, &grid, units, info);
         memcpy(info->dims, grid.even, sizeof grid.even);
     }
     return grid;

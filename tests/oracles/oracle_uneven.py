@@ -72,7 +72,10 @@ for form in ("NETCDF3_CLASSIC", "NETCDF4"):
               axes=(x, y, z))
         check("a.nc", ["--crop", "2:9,1:40,5:20"], (15, 39, 7), name=form,
               axes=(x, y, z))
-oracle.says("uneven levels", "a.nc", "are not evenly spaced")
+steps = np.abs(np.diff(Z))
+oracle.says("uneven levels, with their unit", "a.nc", "along z are not evenly spaced "
+            f"(steps of {steps.min():g} to {steps.max():g} m); their {Z.size} voxels")
+oracle.says("all lengths have it", "a.nc", " m apart, each at the nearest, at most ")
 
 
 def levels(path, at, values, kind="f4", name="depth", **says):
@@ -98,6 +101,7 @@ for turn in (1, -1):
     a[2, 1, 1], a[9, 2, 2] = 999, -999
     levels("o.nc", OCEAN[::turn], a[::turn])
     oracle.says("an ocean", "o.nc", "fall together")
+    oracle.says("without units", "o.nc", "(steps of 2 to 2000); their")
     values, matrix = oracle.voxels_of("o.nc")
     if (values.min(), values.max()) != (-999, 999) or len(values) != 8 * len(OCEAN):
         oracle.fail("an ocean", f"{values.shape} {values.min()} {values.max()}")

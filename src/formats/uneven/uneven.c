@@ -103,9 +103,9 @@ static void limit(const snow_uneven *grid, double bytes, double even[3]) {
 }
 
 static void note_axis(snow_context *context, const snow_uneven *grid, int axis,
-                      snow_volume_info *info) {
+                      const char *unit, snow_volume_info *info) {
     double least, most, shift;
-    char shared[96] = "";
+    char shared[96] = "", behind[80] = "";
     size_t used = strlen(info->storage);
     const double *at = grid->at[axis], step = grid->step[axis];
     find_steps(at, grid->count[axis], &least, &most);
@@ -115,19 +115,22 @@ static void note_axis(snow_context *context, const snow_uneven *grid, int axis,
                  "; %lld fall together with others, as finer steps would be "
                  "too many",
                  (long long)lost);
+    if (*unit)
+        snprintf(behind, sizeof behind, " %.64s", unit);
     snow_notify(context,
                 "coordinates along %c are not evenly spaced (steps of %g to "
-                "%g); their %lld voxels are resampled to %lld, %g apart, each "
-                "at the nearest, at most %.4g away%s",
-                "xyz"[axis], least, most, (long long)grid -> count[axis],
-                (long long)grid -> even[axis], fabs(step), shift, shared);
+                "%g%s); their %lld voxels are resampled to %lld, %g%s apart, "
+                "each at the nearest, at most %.4g%s away%s",
+                "xyz"[axis], least, most, behind,
+                (long long)grid -> count[axis], (long long)grid -> even[axis],
+                fabs(step), behind, shift, behind, shared);
     snprintf(info->storage + used, sizeof info->storage - used,
              "%s%c: %lld uneven to %lld even", used ? ", " : "", "xyz"[axis],
              (long long)grid -> count[axis], (long long)grid -> even[axis]);
 }
 
 void snow_uneven_plan(snow_context *context, snow_uneven *grid,
-                      snow_volume_info *info) {
+                      const char *const units[3], snow_volume_info *info) {
     double even[3];
     for (int i = 0; i < 3; i++)
         even[i] = wanted(grid, i);
@@ -139,7 +142,7 @@ void snow_uneven_plan(snow_context *context, snow_uneven *grid,
         if (!at)
             continue;
         grid->step[i] = (at[grid->count[i] - 1] - at[0]) / (even[i] - 1);
-        note_axis(context, grid, i, info);
+        note_axis(context, grid, i, units[i], info);
     }
 }
 

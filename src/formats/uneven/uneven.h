@@ -32,10 +32,11 @@ bool snow_uneven_fits(const double *coordinates, int64_t count);
 /* Returns whether any axis is uneven. */
 bool snow_uneven_any(const snow_uneven *grid);
 
-/* Chooses `even` and `step`, and notes what is resampled, also in
- * info->storage; integers are codes unless the caller says otherwise. */
+/* Chooses `even` and `step`, and notes what is resampled, with the units of the
+ * coordinates (or ""), also in info->storage; integers are codes unless the
+ * caller says otherwise. */
 void snow_uneven_plan(snow_context *context, snow_uneven *grid,
-                      snow_volume_info *info);
+                      const char *const units[3], snow_volume_info *info);
 
 /* Reads a box of the file's own voxels, as the crop of the options says; where
  * `out` is NULL only the sizes are checked. */
