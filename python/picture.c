@@ -61,12 +61,12 @@ static snow_status copy_depth(const volume_object *o, snow_image **out) {
 typedef struct request {
     volume_object *volume;
     transfer_object *transfer;
-    snow_layer layers[SNOW_LAYERS_MOST + 1]; /* channels, then an overlay */
-    int count, mixing;                       /* of them, of which channels */
+    snow_layer layers[SNOW_LAYERS_MAX + 1]; /* channels, then an overlay */
+    int count, mixing;                      /* of them, of which channels */
     bool mixed;   /* the volume is one of channels, too */
     bool outline; /* of the overlay of a slice, the borders alone */
     double
-        shares[SNOW_LAYERS_MOST + 2]; /* of light: the volume's, the layers' */
+        shares[SNOW_LAYERS_MAX + 2]; /* of light: the volume's, the layers' */
     snow_view view;
     snow_settings settings;
     const double *azimuths; /* all that are to fit */
@@ -275,7 +275,7 @@ static PyObject *answer(PyObject *type, const request *r, PyObject *image,
  * whose lock is held, channels first; false with an exception. */
 static bool read_layers(PyObject *given, request *r) {
     const Py_ssize_t count = PyTuple_Size(given);
-    if (count > SNOW_LAYERS_MOST + 1)
+    if (count > SNOW_LAYERS_MAX + 1)
         PyErr_SetString(PyExc_ValueError, "too many channels");
     for (Py_ssize_t n = 0; n < count && !PyErr_Occurred(); n++) {
         PyObject *volume, *transfer;

@@ -59,7 +59,9 @@ SNOW_API void snow_context_free(snow_context *context);
  * `context` is NULL, since there was no memory for it, the message says so. */
 SNOW_API const char *snow_context_message(const snow_context *context);
 
-/* Receives a warning, one line: what was guessed or left out. */
+/* Receives a warning, one line: what was guessed or left out. It is called by
+ * the thread that called the library, and must not call that with the same
+ * context. */
 typedef void snow_warning_fn(void *user, const char *text);
 
 /* Sets who receives warnings; NULL: nobody, the default. */

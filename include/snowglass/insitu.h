@@ -10,6 +10,7 @@
 #include <snowglass/ranks.h>
 
 typedef struct snow_insitu snow_insitu;
+
 /* Collective. Makes the pictures of one field, over the caller's communicator,
  * which is freed after them. */
 SNOW_API snow_status snow_insitu_new(snow_comm *comm, snow_insitu **out);

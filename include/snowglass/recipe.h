@@ -49,7 +49,7 @@ typedef struct snow_recipe {
     int64_t limit_bytes;
     const char *channels, *steps; /* of the tool: --channel, --time; or NULL */
     const char *grid;             /* of the tool's slices, as is `ortho` */
-    bool ortho, unused[7], sync;  /* sync: as in snow_insitu_settings */
+    bool ortho, sync;             /* sync: as in snow_insitu_settings */
     const char *measure, *slab;   /* of the tool; or NULL */
 } snow_recipe;
 SNOW_RECORD(snow_recipe);

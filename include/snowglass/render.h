@@ -172,7 +172,7 @@ typedef struct snow_layer {
     const snow_transfer *transfer;
     bool mixes;
 } snow_layer;
-#define SNOW_LAYERS_MOST 7
+#define SNOW_LAYERS_MAX 7
 
 /* Sets the volumes that are drawn with the one of snow_frame_render, slab by
  * slab; a count of 0 removes them. They are on its grid (dims and matrix;

@@ -68,7 +68,7 @@ SNOW_API double snow_view_zoom_for_voxels(
  * right, y down (the middle of the first pixel is at 0.5, 0.5), and its depth,
  * as snow_frame_depth gives it. What is behind the eye of a perspective view is
  * NaN. `info` is that of the whole volume, `view` the one that was drawn. Both
- * arrays may be one. Errors: of snow_frame_render, of the view. */
+ * arrays may be one. Errors: BAD_USAGE (a view that cannot be drawn). */
 SNOW_API snow_status snow_view_world_to_pixel(snow_context *context,
     const snow_volume_info *info, const snow_view *view, const double *points,
     size_t count, double *pixels);

@@ -178,8 +178,8 @@ SNOW_API snow_status snow_volume_open_memory(snow_context *context,
 typedef size_t snow_read_at_fn(
     void *user, uint64_t at, void *bytes, size_t count);
 
-/* Opens a file of `size` bytes that a function reads, which is not called after
- * this call. Errors: as snow_volume_open. */
+/* Opens a file of `size` bytes that a function reads, which is called by this
+ * thread, and not after this call. Errors: as snow_volume_open. */
 SNOW_API snow_status snow_volume_open_with(snow_context *context,
     const char *name, snow_read_at_fn *read_at, void *user, uint64_t size,
     const snow_volume_options *options, snow_volume **out);
@@ -253,6 +253,7 @@ SNOW_RECORD(snow_volume_statistics);
 /* Measures a volume. Errors: STOPPED. */
 SNOW_API snow_status snow_volume_get_statistics(
     const snow_volume *volume, snow_volume_statistics *out);
+
 /* Returns whether a range of data values is that of Hounsfield units, where the
  * file does not name its unit. */
 SNOW_API bool snow_are_hounsfield(

@@ -411,7 +411,7 @@ void layers_drop_look(layers *l) {
 
 snow_status layers_set(const layers *l, const channel_set *c,
                        snow_frame *frame) {
-    snow_layer all[SNOW_LAYERS_MOST + 1];
+    snow_layer all[SNOW_LAYERS_MAX + 1];
     int count = 0;
     for (int n = 1; n < c->list.count; n++)
         all[count++] = (snow_layer){c->volumes[n], c->looks[n], true};

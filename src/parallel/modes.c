@@ -72,7 +72,7 @@ static snow_status join_values(snow_in_flight *f, snow_data_range *range,
                                bool *lost) {
     enum { LOST, FIRST, MINUS_LOW = 0, HIGH, HOLES, MASKED, COUNT };
     const int count = 1 + f->picture.job.layer_count;
-    double all[FIRST + COUNT * (1 + SNOW_LAYERS_MOST)];
+    double all[FIRST + COUNT * (1 + SNOW_LAYERS_MAX)];
     all[LOST] = f->picture.job.volume->lost_clip;
     for (int n = 0; n < count; n++) {
         double *words = all + FIRST + COUNT * n;
@@ -96,7 +96,7 @@ static snow_status join_values(snow_in_flight *f, snow_data_range *range,
 
 snow_status snow_in_flight_agree_values(snow_in_flight *f) {
     snow_value_path **path = &f->picture.frame->value_path;
-    snow_data_range range[1 + SNOW_LAYERS_MOST];
+    snow_data_range range[1 + SNOW_LAYERS_MAX];
     bool lost;
     f->ranks->values_of = 0;
     SNOW_TRY(snow_comm_agree_status(f->ranks->comm, measure_values(f, range)));

@@ -30,7 +30,7 @@ static snow_status fail_part(const snow_picture *p, const char *what,
 
 static snow_status find_values(snow_picture *p) {
     snow_frame *frame = p->frame;
-    snow_data_range range, layers[SNOW_LAYERS_MOST];
+    snow_data_range range, layers[SNOW_LAYERS_MAX];
     SNOW_TRY(snow_value_path_new(frame->context, &frame->value_path));
     SNOW_TRY(snow_value_measure(
         frame->value_path, p->job.volume,

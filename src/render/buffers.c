@@ -16,10 +16,10 @@ void snow_buffers_free(snow_frame *frame) {
 
 snow_status snow_frame_set_layers(snow_frame *frame, const snow_layer *layers,
                                   int count) {
-    if (count < 0 || count > SNOW_LAYERS_MOST)
+    if (count < 0 || count > SNOW_LAYERS_MAX)
         return snow_fail(frame->context, SNOW_STATUS_BAD_USAGE,
                          "%d layers; up to %d are drawn with a volume", count,
-                         SNOW_LAYERS_MOST);
+                         SNOW_LAYERS_MAX);
     for (int n = 0; n < count; n++)
         frame->layers[n] = layers[n];
     frame->layer_count = count;

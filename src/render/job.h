@@ -34,9 +34,9 @@ struct snow_frame {
     snow_mode_colors mode_colors;
     snow_image *depth;           /* of the last picture; NULL: not asked for */
     snow_value_path *value_path; /* of method shear-warp; NULL until needed */
-    snow_layer layers[SNOW_LAYERS_MOST]; /* as the caller gave them; */
-    snow_layer placed[SNOW_LAYERS_MOST]; /* what the present part has of them */
-    snow_layer_file read[SNOW_LAYERS_MOST];
+    snow_layer layers[SNOW_LAYERS_MAX]; /* as the caller gave them; */
+    snow_layer placed[SNOW_LAYERS_MAX]; /* what the present part has of them */
+    snow_layer_file read[SNOW_LAYERS_MAX];
     int layer_count;
     snow_ranks *ranks; /* of pictures by many ranks; NULL until needed */
     /* The first line of the picture that is drawn, and one past the last; {0,

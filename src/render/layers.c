@@ -82,7 +82,7 @@ snow_status snow_layers_place(snow_frame *frame, const snow_request *request) {
 }
 
 void snow_layers_drop(snow_frame *frame, int first) {
-    for (int n = first; n < SNOW_LAYERS_MOST; n++) {
+    for (int n = first; n < SNOW_LAYERS_MAX; n++) {
         snow_volume_close(frame->read[n].volume);
         frame->read[n].volume = NULL;
     }

@@ -40,9 +40,9 @@ static snow_image *render(const model_stage *stage,
     snow_volume *volume = open_cut(stage->context, cast);
     snow_transfer *transfer = model_transfer(stage->context, scene);
     snow_image *image = NULL;
-    snow_volume *volumes[SNOW_LAYERS_MOST];
-    snow_transfer *looks[SNOW_LAYERS_MOST];
-    snow_layer channels[SNOW_LAYERS_MOST];
+    snow_volume *volumes[SNOW_LAYERS_MAX];
+    snow_transfer *looks[SNOW_LAYERS_MAX];
+    snow_layer channels[SNOW_LAYERS_MAX];
     int count = 0;
     for (const reference_cast *c = cast->next; c; c = c->next, count++) {
         volumes[count] = open_cut(stage->context, c);

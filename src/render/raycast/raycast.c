@@ -155,7 +155,7 @@ static void cast_line(void *of, int64_t y, int worker) {
     const snow_job *job = pass->job;
     size_t width = (size_t)job->view->width, line = (size_t)y * width;
     size_t channels = (size_t)job->channels;
-    snow_raycast_eye eye, layers[SNOW_LAYERS_MOST];
+    snow_raycast_eye eye, layers[SNOW_LAYERS_MAX];
     memset(&eye, 0, sizeof eye);
     for (int n = 0; n < pass->layer_count; n++)
         memset(&layers[n], 0, sizeof *layers);
@@ -300,7 +300,7 @@ static snow_status prepare(const snow_picture *p, const snow_job *job,
 }
 
 static snow_status cast_rays(snow_picture *p, snow_job *job) {
-    snow_raycast_pass pass, layers[SNOW_LAYERS_MOST];
+    snow_raycast_pass pass, layers[SNOW_LAYERS_MAX];
     double mark = snow_seconds();
     SNOW_TRY(prepare(p, job, &pass, layers));
     snow_monitor_next(job->context->monitor, SNOW_STAGE_RENDER, 0, 1);

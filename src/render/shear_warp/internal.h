@@ -150,8 +150,8 @@ struct snow_value_path {
     snow_line_batch batch;      /* of its tiles */
     float *lines;               /* of the warp */
     char *scratch;
-    snow_value_path *layers[SNOW_LAYERS_MOST]; /* of other volumes */
-    int layer_count;                           /* of the picture */
+    snow_value_path *layers[SNOW_LAYERS_MAX]; /* of other volumes */
+    int layer_count;                          /* of the picture */
     int group;      /* as a layer: those of one are mixed; the picture's is 0 */
     double white;   /* of colours that are mixed: their ground; or 0 */
     snow_clip clip; /* and what it has */

@@ -152,7 +152,7 @@ bool snow_value_draw_stack(const snow_value_drawing *job,
     float *room_of_two =
         (float *)(void *)(slabs +
                           resampled_slices * 2 * (size_t)path->layer_count);
-    layer_walk walks[SNOW_LAYERS_MOST + 1];
+    layer_walk walks[SNOW_LAYERS_MAX + 1];
     const int tile[2] = {x, y};
     int count = 0;
     bool drawn = false;

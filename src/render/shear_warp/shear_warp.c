@@ -44,7 +44,7 @@ void snow_value_path_free(snow_value_path *path) {
         snow_release(context, path->images[n].halved);
     }
     snow_line_batch_fini(&path->batch);
-    for (int n = 0; n < SNOW_LAYERS_MOST; n++)
+    for (int n = 0; n < SNOW_LAYERS_MAX; n++)
         snow_value_path_free(path->layers[n]);
     snow_release(context, path);
 }
