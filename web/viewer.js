@@ -553,7 +553,7 @@ new ResizeObserver(() => {
 }).observe(picture);
 engine.open();
 document.addEventListener('pointerdown', () => store.part(), true);
-window.addEventListener('beforeunload', event => {
+window.addEventListener?.('beforeunload', event => { // in a notebook the window is not this page's
     history.replaceState({slices: store.keys.slices, file: store.info?.file}, ''); // of this page alone: nobody else has them
     if (movies.comes) // without any page it would not be written
         event.preventDefault();

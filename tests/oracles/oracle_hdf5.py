@@ -112,7 +112,7 @@ oracle.expect("v.h5:/colours", colours[None, ..., 2],
 oracle.expect("v.h5:/thin", colours)
 oracle.refuse("v.h5:/thin", "have one value", ["--component", "magnitude"], 2)
 oracle.refuse("v.h5:/t", "not a component", ["--component", "radius"], 2)
-oracle.refuse("v.h5:/t", "give one of them",
+oracle.refuse("v.h5:/t", "which name the same",
               ["--component", "x", "--channel", 1], 2)
 
 # Labels of axes say which counts components, and which is time.

@@ -78,7 +78,7 @@ static void a_volume_property_of_slicer(void **state) {
     assert_true(p->gradient_opacities[1].value == 20 &&
                 p->gradient_opacities[1].opacity == 0.5);
     expect(tf, 200, 0.9, 0.5, 0.25, 0.25, 1e-12);
-    assert_non_null(strstr(remark, "--material 0.1,0.9,0.2,10 to use it"));
+    assert_non_null(strstr(remark, "--material 0.1,0.9,0.2,10 (ambient"));
     snow_look_file_free(tf);
     tf = take_text(context, "no suffix", vp);
     assert_string_equal(snow_look_file_format(tf), "slicer-vp");
