@@ -5,12 +5,12 @@
 #include "commands/info_list.h"
 #include "folder/inside.h"
 #include "folder/own.h"
-#include "series/series.h"
 #include "options/config.h"
 #include "recipe_file.h"
 #include "run/log.h"
 #include "run/paths.h"
 #include "run/start.h"
+#include "series/series.h"
 
 #include <dirent.h>
 #include <stdio.h>
@@ -233,13 +233,13 @@ int folder_choose(void *user, const json_t *question, const options **first,
         return fail_memory("out of memory for another volume; close other "
                            "programs");
     pthread_mutex_lock(&f->lock);
-    const folder_entry e = f->entries[entry]; /* whose texts stay */
+    o->of = f->entries[entry];
     pthread_mutex_unlock(&f->lock);
     o->opts = *f->base;
     o->entry = (size_t)entry;
-    int done = take_entry(f, &e, o);
+    int done = take_entry(f, &o->of, o);
     if (done == CONTINUE)
-        done = settle(&e, o);
+        done = settle(&o->of, o);
     if (done != CONTINUE) {
         free_opened(o);
         return done;

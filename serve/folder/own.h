@@ -23,7 +23,7 @@ typedef struct folder_entry {
     snow_volume_info *info; /* of a volume */
     uint64_t bytes;
     int64_t changed; /* seconds since 1970 */
-    char *cover; /* a data URL, "" where there is none; NULL: not made */
+    char *cover;     /* a data URL, "" where there is none; NULL: not made */
 } folder_entry;
 
 /* More than anybody looks through; those beyond are counted. */
@@ -40,6 +40,7 @@ typedef struct cover_question {
 
 /* A volume that is open, or about to be. */
 typedef struct opened {
+    folder_entry of; /* whose texts the options have */
     options opts;
     char path[PATH_MAX];
     char *operands[2];
