@@ -122,7 +122,7 @@ export async function reopened({check, keys, open, part, rest, slicesRest, folde
     const told = words => page.waitForFunction(text => document.querySelector('.said').textContent.includes(text), words,
         {polling: 20});
     const set = (where, changes) => where.evaluate(all => window.snowglass.recipe.set(all), changes);
-    /** Another viewer, which the page finds when it is told. */
+    /** Another viewer, which the page finds by its address. */
     const renew = async () => {
         await page.evaluate(() => { window.snowglass.engine.wait = 1e8; });
         await end(server);

@@ -92,7 +92,7 @@ async function asked({check, open}, page) {
     check('and does nothing else', await movie.getByRole('button', {name: /^Download|^Fetch/}).isVisible() && !await stays(other));
     await movie.getByRole('button', {name: /^Write/}).click();
     await dialog.getByRole('button', {name: 'Write the new one'}).click();
-    check('until it is told', await writing);
+    check('until the user says so', await writing);
     check('who closes the page meanwhile is asked', await stays(other) && !await stays(page));
     await movie.getByRole('button', {name: /^Cancel/}).click();
     await other.waitForFunction(() => window.snowglass.movies.movie.state === 'cancelled', null, {polling: 20});
